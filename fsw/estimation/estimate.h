@@ -43,7 +43,7 @@ class Estimate {
   [[nodiscard]] Eigen::Matrix<double, M, M> head_covariance() const {
     return matrix().template topLeftCorner<M, M>();
   }
-  [[nodiscard]] bool is_idle(int i) const { return matrix()(i, i) == 0.0; }
+  [[nodiscard]] bool is_inactive(int i) const { return matrix()(i, i) == 0.0; }
 
   /// Component i is `mean` with `variance`, independent of all others; variance 0 deactivates it.
   void reset(int i, double mean, double variance) {
@@ -52,7 +52,7 @@ class Estimate {
     matrix().col(i).head(extent_).setZero();
     matrix()(i, i) = variance;
     if (variance != 0.0) extend_to(i);
-    while (extent_ > 0 && is_idle(extent_ - 1)) --extent_;
+    while (extent_ > 0 && is_inactive(extent_ - 1)) --extent_;
   }
 
   /// Sets the covariance of two active components, as known from a batch solution.
@@ -84,12 +84,12 @@ class Estimate {
     mean_.template head<M>() = mean;
     extend_to(M - 1);
     for (int c = 0; c < extent_; ++c) {
-      if (c >= M && is_idle(c)) continue;
+      if (c >= M && is_inactive(c)) continue;
       const Eigen::Matrix<double, M, 1> column = matrix().col(c).template head<M>();
       matrix().col(c).template head<M>() = a.lazyProduct(column);
     }
     for (int r = 0; r < extent_; ++r) {
-      if (r >= M && is_idle(r)) continue;
+      if (r >= M && is_inactive(r)) continue;
       const Eigen::Matrix<double, M, 1> row = matrix().row(r).template head<M>().transpose();
       matrix().row(r).template head<M>() = a.lazyProduct(row).transpose();
     }
@@ -107,7 +107,7 @@ class Estimate {
   Innovation update(const Vector& h, double residual, double noise_variance, double gate) {
     const Vector ph = covariance_times(h);
     Innovation innovation{.value = residual, .variance = h.dot(ph) + noise_variance, .accepted = false};
-    // Written such that a NaN is refused.
+    // Written such that a NaN is rejected.
     if (!(innovation.variance > 0.0) || !(innovation.nis() <= gate)) return innovation;
     innovation.accepted = true;
     mean_.head(extent_) += ph.head(extent_) * (residual / innovation.variance);
@@ -130,7 +130,7 @@ class Estimate {
     double minimum = 0.0;
     for (int i = 0; i < N; ++i) sum += mean_(i);
     for (int i = 0; i < extent_; ++i) {
-      if (is_idle(i)) continue;  // its row and column are zero
+      if (is_inactive(i)) continue;  // its row and column are zero
       sum += matrix().col(i).head(extent_).sum();
       minimum = matrix()(i, i) < minimum ? matrix()(i, i) : minimum;
     }

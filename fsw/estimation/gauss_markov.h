@@ -27,14 +27,14 @@ struct GaussMarkov {
 
 /// Activates component `i` with the stationary distribution.
 template <int N>
-void begin_process(Estimate<N>& estimate, int i, const GaussMarkov& process) {
+void initialize_process(Estimate<N>& estimate, int i, const GaussMarkov& process) {
   estimate.reset(i, process.mean, process.sigma * process.sigma);
 }
 
 /// Propagates component `i`; has no effect while it is inactive.
 template <int N>
-void advance_process(Estimate<N>& estimate, int i, const GaussMarkov& process, double decay) {
-  if (estimate.is_idle(i)) return;
+void propagate_process(Estimate<N>& estimate, int i, const GaussMarkov& process, double decay) {
+  if (estimate.is_inactive(i)) return;
   estimate.scale(i, decay);
   estimate.shift(i, (1.0 - decay) * process.mean);
   estimate.add_noise(i, process.renewed_variance(decay));
@@ -42,10 +42,10 @@ void advance_process(Estimate<N>& estimate, int i, const GaussMarkov& process, d
 
 /// Propagates the active components of a block, all by the same process.
 template <class State, class Block>
-void advance_components(Estimate<State::kSize>& estimate, const GaussMarkov& process, const BlockStep& step) {
+void propagate_components(Estimate<State::kSize>& estimate, const GaussMarkov& process, const BlockStep& step) {
   constexpr int kFirst = State::template offset<Block>();
   const double decay = process.decay(step.dt_s);
-  for (int k = 0; k < Block::kSize; ++k) advance_process(estimate, kFirst + k, process, decay);
+  for (int k = 0; k < Block::kSize; ++k) propagate_process(estimate, kFirst + k, process, decay);
 }
 
 /// Base of a block of independent processes with equal settings: `struct Bias : GaussMarkovBlock<Bias, 2>`, with
@@ -57,7 +57,7 @@ struct GaussMarkovBlock {
 
   template <class State>
   static void propagate(Estimate<State::kSize>& estimate, const Settings& process, const BlockStep& step) {
-    advance_components<State, Block>(estimate, process, step);
+    propagate_components<State, Block>(estimate, process, step);
   }
 };
 

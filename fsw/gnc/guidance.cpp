@@ -102,7 +102,7 @@ void Guidance::assess(GpsTime now, const Navigation& navigation, const Managemen
   } else {
     safety_.reset();
   }
-  const trunk::TrunkSettings& settings = navigation.trunk().trunk().settings();
+  const filter::FilterSettings& settings = navigation.trunk().trunk().settings();
   burn_uncertainty_ =
       safety_ ? safety::BurnUncertainty{settings.burn_sigma, settings.burn_sigma_relative} : safety::BurnUncertainty{};
   earliest_burn_ = now + Duration{configuration.compute_latency_ns};

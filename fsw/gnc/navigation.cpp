@@ -78,9 +78,9 @@ NavigationSource Navigation::source_of(GpsTime now) const {
 
 /// 1 sigma of the differential acceleration of the target, m/s^2, of all axes.
 double Navigation::differential_acceleration_sigma() const {
-  const trunk::Estimate& estimate = trunk_.trunk().estimate();
+  const filter::Estimate& estimate = trunk_.trunk().estimate();
   double variance = 0.0;
-  for (int k = trunk::kAt<trunk::DifferentialAccelerations>; k < trunk::kOrbitSize; ++k) {
+  for (int k = filter::kAt<filter::DifferentialAccelerations>; k < filter::kOrbitSize; ++k) {
     variance += estimate.covariance(k, k);
   }
   return math::sqrt(variance);
@@ -89,8 +89,8 @@ double Navigation::differential_acceleration_sigma() const {
 /// Propagates the covariance of position and velocity from the estimator's epoch, including the unmodelled acceleration
 /// and the differential one, known to its sigma.
 void Navigation::set_uncertainty(GpsTime now) {
-  const trunk::Trunk& trunk = trunk_.trunk();
-  const Matrix6 covariance_rtn = trunk::covariance_rtn(trunk.estimate(), trunk.servicer());
+  const filter::RelativeNavigationFilter& trunk = trunk_.trunk();
+  const Matrix6 covariance_rtn = filter::covariance_rtn(trunk.estimate(), trunk.servicer());
   const double coast_s = seconds(now - trunk.epoch());
   const double separation = (state_.target.position_eci - state_.servicer.position_eci).norm();
   const double acceleration = math::hypot(kUnmodelledGradient * separation, differential_acceleration_sigma());
@@ -133,7 +133,7 @@ void Navigation::set_reference(const Pair& estimated) {
 /// Records of the receivers and the camera, each at its own time.
 void Navigation::take_trunk(GpsTime now, Inbox& inbox) {
   trunk_.update(now, inbox, own_burns());
-  const trunk::Trunk& trunk = trunk_.trunk();
+  const filter::RelativeNavigationFilter& trunk = trunk_.trunk();
   const Result<orbit::CartesianState> target = trunk.target();
   if (!target.ok()) return drop_state();
   state_.last_measurement = trunk_.last_measurement();

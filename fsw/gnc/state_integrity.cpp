@@ -10,10 +10,10 @@ namespace {
 /// words to distinct ones; any other with a probability of 1 - 2^-64. (Fowler, Noll and Vo's hash, with words of 64
 /// bits in place of bytes: a step costs one multiplication for eight bytes. The words are distributed over four sums,
 /// whose multiplications do not wait for each other.)
-std::uint64_t checksum(const trunk::Trunk& trunk) {
+std::uint64_t checksum(const filter::RelativeNavigationFilter& trunk) {
   constexpr std::uint64_t kPrime = 0x100000001B3U, kBasis = 0xCBF29CE484222325U;
-  constexpr std::size_t kWords = sizeof(trunk::Trunk) / sizeof(std::uint64_t);
-  static_assert(sizeof(trunk::Trunk) % sizeof(std::uint64_t) == 0);
+  constexpr std::size_t kWords = sizeof(filter::RelativeNavigationFilter) / sizeof(std::uint64_t);
+  static_assert(sizeof(filter::RelativeNavigationFilter) % sizeof(std::uint64_t) == 0);
   const auto* const bytes = reinterpret_cast<const unsigned char*>(&trunk);
   const auto add = [bytes](std::uint64_t& sum, std::size_t place) {
     std::uint64_t word = 0;
@@ -35,19 +35,19 @@ std::uint64_t checksum(const trunk::Trunk& trunk) {
 
 /// As bytes, with their padding: assignment would first read what may be damaged, such as whether an optional value is
 /// present. The trunk consists of plain objects without pointers.
-void copy_bytes(trunk::Trunk& to, const trunk::Trunk& from) {
-  std::memcpy(static_cast<void*>(&to), static_cast<const void*>(&from), sizeof(trunk::Trunk));
+void copy_bytes(filter::RelativeNavigationFilter& to, const filter::RelativeNavigationFilter& from) {
+  std::memcpy(static_cast<void*>(&to), static_cast<const void*>(&from), sizeof(filter::RelativeNavigationFilter));
 }
 
 }  // namespace
 
-void StateIntegrity::seal(const trunk::Trunk& trunk) {
+void StateIntegrity::seal(const filter::RelativeNavigationFilter& trunk) {
   copy_bytes(copy_, trunk);
   checksum_ = checksum(trunk);
   is_sealed_ = true;
 }
 
-Integrity StateIntegrity::verify(trunk::Trunk& trunk) const {
+Integrity StateIntegrity::verify(filter::RelativeNavigationFilter& trunk) const {
   if (!is_sealed_) return Integrity::kIntact;
   const bool is_copy_intact = checksum(copy_) == checksum_;
   if (checksum(trunk) == checksum_) return is_copy_intact ? Integrity::kIntact : Integrity::kCopyDamaged;

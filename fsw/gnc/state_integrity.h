@@ -20,13 +20,13 @@ enum class Integrity : std::uint8_t {
 class StateIntegrity {
  public:
   /// At the end of a step.
-  void seal(const trunk::Trunk& trunk);
+  void seal(const filter::RelativeNavigationFilter& trunk);
 
   /// At the beginning of the next one; kIntact before the first seal().
-  [[nodiscard]] Integrity verify(trunk::Trunk& trunk) const;
+  [[nodiscard]] Integrity verify(filter::RelativeNavigationFilter& trunk) const;
 
  private:
-  trunk::Trunk copy_;
+  filter::RelativeNavigationFilter copy_;
   std::uint64_t checksum_ = 0;  ///< of both
   bool is_sealed_ = false;
 };

@@ -55,8 +55,8 @@ bool is_valid(const target_apriori& a) {
   }
 }
 
-trunk::TrunkSettings trunk_settings(const Telecommands& telecommands) {
-  trunk::TrunkSettings settings;
+filter::FilterSettings trunk_settings(const Telecommands& telecommands) {
+  filter::FilterSettings settings;
   if (const auto* earth = telecommands.in_force<earth_configuration>()) {
     settings.earth = {.epoch = GpsTime{earth->epoch_ns},
                       .ut1_minus_gps_s = earth->ut1_minus_gps_s,
@@ -77,10 +77,10 @@ trunk::TrunkSettings trunk_settings(const Telecommands& telecommands) {
   return settings;
 }
 
-trunk::TargetApriori apriori_of(const target_apriori& known, GpsTime time) {
-  trunk::TargetApriori apriori;
-  apriori.kind = known.kind == target_apriori::kKindRoe ? trunk::TargetApriori::Kind::kMeanRoe
-                                                        : trunk::TargetApriori::Kind::kAbsoluteOrbit;
+filter::TargetApriori apriori_of(const target_apriori& known, GpsTime time) {
+  filter::TargetApriori apriori;
+  apriori.kind = known.kind == target_apriori::kKindRoe ? filter::TargetApriori::Kind::kMeanRoe
+                                                        : filter::TargetApriori::Kind::kAbsoluteOrbit;
   apriori.time = time;
   apriori.target = {vector(known.position_eci), vector(known.velocity_eci)};
   apriori.mean_a_roe_m = vector(known.mean_a_roe_m);

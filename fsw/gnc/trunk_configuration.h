@@ -17,8 +17,8 @@ namespace vbar::fsw::gnc {
 [[nodiscard]] bool is_valid(const target_apriori& apriori);
 
 /// From the telecommands in force; default values in place of those not received.
-[[nodiscard]] trunk::TrunkSettings trunk_settings(const Telecommands& telecommands);
+[[nodiscard]] filter::FilterSettings trunk_settings(const Telecommands& telecommands);
 /// `time`: its epoch.
-[[nodiscard]] trunk::TargetApriori apriori_of(const target_apriori& known, GpsTime time);
+[[nodiscard]] filter::TargetApriori apriori_of(const target_apriori& known, GpsTime time);
 
 }  // namespace vbar::fsw::gnc

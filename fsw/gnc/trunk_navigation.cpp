@@ -78,7 +78,7 @@ void TrunkNavigation::configure(GpsTime now, const Telecommands& telecommands) {
 void TrunkNavigation::select(GpsTime now, const Telecommands& telecommands) {
   const auto* navigation = telecommands.in_force<navigation_configuration>();
   if (navigation == nullptr) return;
-  trunk::TrunkSettings blocks = trunk_settings(telecommands);
+  filter::FilterSettings blocks = trunk_settings(telecommands);
   std::array<bool, std::tuple_size_v<sources::SourceList>> is_used{};
   for_each(sources_, [&]<class Source>(Source& source, std::uint8_t index) {
     is_used[index] = source.configure({telecommands, blocks}) && (navigation->sources & Source::kUse) != 0;
@@ -92,7 +92,7 @@ void TrunkNavigation::select(GpsTime now, const Telecommands& telecommands) {
 
 /// The frame of the command turns with the orbit, so that the trunk's state is propagated to the time.
 std::optional<Matrix3> TrunkNavigation::commanded_attitude(GpsTime time) const {
-  if (!platform_.pointing || !trunk_.own_orbit().started()) return std::nullopt;
+  if (!platform_.pointing || !trunk_.absolute_orbit().started()) return std::nullopt;
   const auto servicer = orbit::propagate_j2(trunk_.servicer(), seconds(time - trunk_.epoch()));
   if (!servicer.ok()) return std::nullopt;
   return sources::R_body_eci_of(*platform_.pointing, time, servicer.value());
@@ -133,17 +133,17 @@ void TrunkNavigation::update(GpsTime now, Inbox& inbox, std::span<const navigati
 }
 
 /// Not beyond the oldest record that a source still owes.
-GpsTime TrunkNavigation::owed_until(GpsTime now) const {
+GpsTime TrunkNavigation::fusion_horizon(GpsTime now) const {
   GpsTime until = now;
   for_each(sources_, [&](const auto& source, std::uint8_t /*index*/) {
-    const std::optional<GpsTime> owed = source.aid().is_on() ? source.owes(now) : std::nullopt;
+    const std::optional<GpsTime> owed = source.aid().is_on() ? source.pending_since(now) : std::nullopt;
     if (owed && *owed < until) until = *owed;
   });
   return until;
 }
 
 void TrunkNavigation::process_records(Context& context, std::span<const navigation::Burn> burns) {
-  const GpsTime until = owed_until(context.now);
+  const GpsTime until = fusion_horizon(context.now);
   for (std::size_t k = 0; k < sources::RecordQueue::kCapacity; ++k) {
     const sources::Record* next = queue_.front();
     if (next == nullptr || next->time > until) return;
@@ -218,7 +218,7 @@ void TrunkNavigation::isolate(GpsTime now, std::size_t index, Source& source) {
   source.aid().consistency().reset();
   const bool is_too_large = mean > sources::Consistency::kMax;
   if constexpr (std::is_same_v<Source, sources::OwnGnssSource>) {
-    if (is_too_large) trunk_.inflate_own_orbit(kOwnOrbitInflation);
+    if (is_too_large) trunk_.inflate_absolute_orbit(kAbsoluteOrbitInflation);
   } else if (!trunk_.is_confirmed_by_others({.bit = Source::kUse})) {
     if (is_too_large) trunk_.scale_relative_covariance(mean);
   } else {

@@ -40,14 +40,14 @@ class TrunkNavigation {
   /// Commanded pointing of the camera, valid until the next command.
   void set_pointing(const sources::Pointing& pointing) { platform_.pointing = pointing; }
 
-  [[nodiscard]] const trunk::Trunk& trunk() const { return trunk_; }
+  [[nodiscard]] const filter::RelativeNavigationFilter& trunk() const { return trunk_; }
   /// The receivers' epochs as decoded, from the trunk's epoch on.
   [[nodiscard]] const sources::GnssFrontEnd& gnss() const { return gnss_; }
   /// At the end of a step, and at the beginning of the next one (state_integrity.h).
   void seal() { integrity_.seal(trunk_); }
   [[nodiscard]] Integrity verify() { return integrity_.verify(trunk_); }
   /// Whether the relative orbit suffices to plan.
-  [[nodiscard]] bool valid() const { return trunk_.knowledge() == trunk::RelativeKnowledge::kEstimated; }
+  [[nodiscard]] bool valid() const { return trunk_.solution_status() == filter::SolutionStatus::kEstimated; }
   template <class Source>
   [[nodiscard]] bool uses() const {
     return source<Source>().aid().is_on();
@@ -70,7 +70,7 @@ class TrunkNavigation {
 
   static constexpr Duration kIsolation = duration_of_seconds(600);
   /// As after an unknown burn, m/s: the own orbit of a receiver that contradicts it and that nothing else measures.
-  static constexpr double kOwnOrbitInflation = 0.05;
+  static constexpr double kAbsoluteOrbitInflation = 0.05;
 
   /// Telemetry of the sources in use, and an event of each change of the state of any source.
   void report(Outbox& outbox, std::int64_t step, GpsTime now, const Inbox& inbox);
@@ -83,7 +83,7 @@ class TrunkNavigation {
   template <class Source>
   void isolate(GpsTime now, std::size_t index, Source& source);
   [[nodiscard]] bool is_isolated(std::size_t index) const { return isolated_until_[index] > trunk_.epoch(); }
-  [[nodiscard]] GpsTime owed_until(GpsTime now) const;
+  [[nodiscard]] GpsTime fusion_horizon(GpsTime now) const;
   void process_records(sources::Context& context, std::span<const navigation::Burn> burns);
 
   /// Of the servicer, in the step.
@@ -93,7 +93,7 @@ class TrunkNavigation {
     double difference = 0.0;  ///< of the last one refused, rad
   };
 
-  trunk::Trunk trunk_;
+  filter::RelativeNavigationFilter trunk_;
   StateIntegrity integrity_;
   sources::RecordQueue queue_;
   sources::Platform platform_;

@@ -13,7 +13,7 @@ constexpr double kLower = 0.5;
 
 }  // namespace
 
-void AdaptiveNoise::take(const Vector2& normalised, Correlation correlation) {
+void AdaptiveNoise::add(const Vector2& normalised, Correlation correlation) {
   if (has_last_) {
     products_ += normalised.dot(last_);
     squares_ += 0.5 * (normalised.squaredNorm() + last_.squaredNorm());

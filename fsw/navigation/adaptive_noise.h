@@ -34,7 +34,7 @@ class AdaptiveNoise {
   };
   /// Two innovations, each normalised by its standard deviation. After every kWindow pairs of neighbours the noise may
   /// change.
-  void take(const Vector2& normalised, Correlation correlation = Correlation::kOfLag);
+  void add(const Vector2& normalised, Correlation correlation = Correlation::kOfLag);
 
   /// A burn or a gap: the next innovation has no neighbour, and the window restarts.
   void interrupt();

@@ -21,7 +21,7 @@ Vector3 EarthFrame::eci_from_itrf(const Vector3& itrf, double seconds_later) con
 
 Result<SignalSource> signal_source(gnss::SatelliteId satellite, double pseudorange_m, GpsTime receiver_time,
                                    const EphemerisStore& ephemerides, const EarthFrame& frame) {
-  // Written such that a NaN is refused.
+  // Written such that a NaN is rejected.
   if (!(pseudorange_m >= kShortestRange && pseudorange_m <= kLongestRange)) return Status::kOutOfRange;
   const gnss::Ephemeris* ephemeris = ephemerides.find(satellite, receiver_time);
   if (ephemeris == nullptr) return Status::kNotReady;

@@ -1,5 +1,5 @@
 #pragma once
-// The state of a source of measurements as an aid of the trunk: one machine for all sources.
+// The state of a source of measurements as an aid of the filter: one machine for all sources.
 //
 //   off -> waiting (for its first usable record) -> starting (initialising) -> aiding <-> suspended -> failed
 //
@@ -20,8 +20,8 @@ enum class AidState : std::uint8_t {
   kOff,        ///< not selected, or not configured
   kWaiting,    ///< no usable record yet
   kStarting,   ///< records are collected to initialise something
-  kAiding,     ///< its rows update the trunk
-  kSuspended,  ///< nothing usable for a time, or its records contradict the trunk
+  kAiding,     ///< its rows update the filter
+  kSuspended,  ///< nothing usable for a time, or its records contradict the filter
   kFailed,     ///< its own estimates were discarded
 };
 

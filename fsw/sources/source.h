@@ -1,19 +1,21 @@
 #pragma once
-// What every source of measurements has in common: its records wait in one queue, in order of their time tags, until
-// the trunk reaches them.
+// What every measurement source has in common: its records wait in one queue, in order of their time tags, until the
+// relative navigation filter reaches them.
 //
 // A source is a folder with a class that offers
 //
-//   static constexpr std::int32_t kUse                    its bit of navigation_configuration.sources
-//   bool configure(Configuration)                         settings from the telecommands in force; false: not complete
-//   void collect(Context&, RecordFiler)                   packets of the step -> records
-//   void process_record(const Record&, Context&, trunk::Trunk&)   measurements of a record; the trunk stands at its
-//   time void watch(GpsTime now, trunk::Trunk&)                after the records of the step: silence void stop(GpsTime
-//   now, trunk::Trunk&)                 not selected any more: its own blocks rest std::optional<GpsTime> owes(GpsTime
-//   now) const        the oldest time of which a record may still come Aid& aid() its state void report(const
-//   Telemetry&) const                   its telemetry
+//   static constexpr std::int32_t kUse              its bit of navigation_configuration.sources
+//   bool configure(Configuration)                   settings from the telecommands in force; false: not complete
+//   void collect(Context&, RecordFiler)             packets of the step -> records
+//   void process_record(record, context, filter)    measurements of a record; the filter stands at its time
+//   void watch(GpsTime now, filter)                 after the records of the step: silence
+//   void stop(GpsTime now, filter)                  not selected any more: deactivates its own blocks
+//   optional<GpsTime> pending_since(GpsTime now)    the oldest time of which a record may still come
+//   Aid& aid()                                      its state
+//   void report(const Telemetry&) const             its telemetry
 //
-// with is_valid(telecommand) for each of its telecommands, and a place in fsw/sources/source_list.h.
+// with is_valid(telecommand) for each of its telecommands, a place in source_list.h, and places of its state blocks in
+// state_blocks.h.
 
 #include <array>
 #include <compare>
@@ -35,7 +37,7 @@
 
 namespace vbar::fsw::sources {
 
-/// A measurement that waits to be folded; its content is with its source, under `number`.
+/// A measurement that waits to be processed; its content is with its source, under `number`.
 struct Record {
   GpsTime time;
   std::uint32_t source = 0;
@@ -84,10 +86,10 @@ class RecordFiler {
   std::uint8_t source_;
 };
 
-/// The telecommands in force, and the settings of the trunk, of which a source sets those of its own blocks.
+/// The telecommands in force, and the settings of the filter, of which a source sets those of its own blocks.
 struct Configuration {
   const gnc::Telecommands& telecommands;
-  trunk::TrunkSettings& settings;
+  filter::FilterSettings& settings;
 };
 
 /// Pointing and attitudes, as all sources need them.
@@ -112,7 +114,7 @@ struct Telemetry {
   GpsTime now;
   const gnc::Inbox& inbox;
   const GnssFrontEnd& gnss;
-  const trunk::Trunk& trunk;
+  const filter::RelativeNavigationFilter& filter;
 };
 
 /// Largest delay of a record with respect to its time tag.

@@ -19,7 +19,8 @@ using SourceList = std::tuple<IdealSource, OwnGnssSource, CarrierSource, Bearing
 /// Whether the filter can distinguish all sources of the list.
 template <class... Source>
 constexpr bool have_places(const std::tuple<Source...>* /*list*/) {
-  return ((trunk::MeasurementSource{.bit = Source::kUse}.place() < trunk::Trunk::kMaxSources) && ...);
+  return ((filter::MeasurementSource{.bit = Source::kUse}.place() < filter::RelativeNavigationFilter::kMaxSources) &&
+          ...);
 }
 static_assert(have_places(static_cast<const SourceList*>(nullptr)));
 

@@ -9,7 +9,7 @@
 #include "fsw/orbit/sun.h"
 #include "fsw/trunk/relative_orbit.h"
 
-namespace vbar::fsw::trunk {
+namespace vbar::fsw::filter {
 namespace {
 
 constexpr Duration kSegment = duration_of_seconds(600);  // propagation interval of one Earth orientation
@@ -46,13 +46,14 @@ Matrix6 drifted(const Vector6& sigma_a_roe_m, double a, double dt, Matrix6& drif
 
 }  // namespace
 
-Result<AprioriRoe> Apriori::at(GpsTime time, const OwnOrbit& own_orbit, const orbit::EarthOrientation& earth) {
-  if (time < known_.time || !own_orbit.started()) return Status::kNotReady;
-  return known_.kind == TargetApriori::Kind::kAbsoluteOrbit ? of_absolute_orbit(time, own_orbit, earth)
-                                                            : of_mean_roe(time, own_orbit);
+Result<AprioriRoe> Apriori::at(GpsTime time, const AbsoluteOrbitFilter& absolute_orbit,
+                               const orbit::EarthOrientation& earth) {
+  if (time < known_.time || !absolute_orbit.started()) return Status::kNotReady;
+  return known_.kind == TargetApriori::Kind::kAbsoluteOrbit ? of_absolute_orbit(time, absolute_orbit, earth)
+                                                            : of_mean_roe(time, absolute_orbit);
 }
 
-Result<AprioriRoe> Apriori::of_absolute_orbit(GpsTime time, const OwnOrbit& own_orbit,
+Result<AprioriRoe> Apriori::of_absolute_orbit(GpsTime time, const AbsoluteOrbitFilter& absolute_orbit,
                                               const orbit::EarthOrientation& earth) {
   for (int segment = 0; segment < kMaxSegments && reached_ < time; ++segment) {
     const GpsTime next = time - reached_ > kSegment ? reached_ + kSegment : time;
@@ -61,7 +62,7 @@ Result<AprioriRoe> Apriori::of_absolute_orbit(GpsTime time, const OwnOrbit& own_
     reached_ = next;
   }
   if (reached_ < time) return Status::kOutOfRange;
-  const orbit::CartesianState own = own_orbit.state();
+  const orbit::CartesianState own = absolute_orbit.state();
   const auto roe = roe_of_target(own, target_);
   const auto servicer = orbit::qns_from_cartesian(own);
   if (!roe.ok()) return roe.status();
@@ -71,13 +72,13 @@ Result<AprioriRoe> Apriori::of_absolute_orbit(GpsTime time, const OwnOrbit& own_
   result.roe = roe.value();
   const Matrix6 jacobian = roe_jacobian(own, servicer.value());
   result.covariance = drifted(known_.sigma_a_roe_m, servicer.value().a, seconds(time - known_.time), drift) +
-                      jacobian.lazyProduct(own_orbit.covariance()).lazyProduct(jacobian.transpose());
+                      jacobian.lazyProduct(absolute_orbit.covariance()).lazyProduct(jacobian.transpose());
   return result;
 }
 
-Result<AprioriRoe> Apriori::of_mean_roe(GpsTime time, const OwnOrbit& own_orbit) const {
+Result<AprioriRoe> Apriori::of_mean_roe(GpsTime time, const AbsoluteOrbitFilter& absolute_orbit) const {
   if (time - known_.time > kOldestRoe) return Status::kNotReady;
-  const auto chief = orbit::qns_from_cartesian(own_orbit.state());
+  const auto chief = orbit::qns_from_cartesian(absolute_orbit.state());
   if (!chief.ok()) return chief.status();
   const auto chief_mean = orbit::mean_from_osculating(chief.value());
   if (!chief_mean.ok()) return chief_mean.status();
@@ -92,4 +93,4 @@ Result<AprioriRoe> Apriori::of_mean_roe(GpsTime time, const OwnOrbit& own_orbit)
   return result;
 }
 
-}  // namespace vbar::fsw::trunk
+}  // namespace vbar::fsw::filter

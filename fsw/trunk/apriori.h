@@ -9,7 +9,7 @@
 #include "fsw/orbit/elements.h"
 #include "fsw/trunk/own_orbit.h"
 
-namespace vbar::fsw::trunk {
+namespace vbar::fsw::filter {
 
 /// Either an absolute orbit, of two-line-element quality, or the mean ROE of preceding navigation.
 struct TargetApriori {
@@ -38,15 +38,16 @@ class Apriori {
   /// The elements with respect to the servicer at `time`. kNotReady before the time of the a-priori orbit, or (for ROE,
   /// which are not propagated beyond a linear drift) more than ten minutes after it; kOutOfRange for an invalid orbit.
   /// The covariance of an absolute orbit includes that of the servicer's own: 0.1 m/s of it cause 200 m of a * da.
-  Result<AprioriRoe> at(GpsTime time, const OwnOrbit& own_orbit, const orbit::EarthOrientation& earth);
+  Result<AprioriRoe> at(GpsTime time, const AbsoluteOrbitFilter& absolute_orbit, const orbit::EarthOrientation& earth);
 
  private:
-  Result<AprioriRoe> of_absolute_orbit(GpsTime time, const OwnOrbit& own_orbit, const orbit::EarthOrientation& earth);
-  [[nodiscard]] Result<AprioriRoe> of_mean_roe(GpsTime time, const OwnOrbit& own_orbit) const;
+  Result<AprioriRoe> of_absolute_orbit(GpsTime time, const AbsoluteOrbitFilter& absolute_orbit,
+                                       const orbit::EarthOrientation& earth);
+  [[nodiscard]] Result<AprioriRoe> of_mean_roe(GpsTime time, const AbsoluteOrbitFilter& absolute_orbit) const;
 
   TargetApriori known_;
   orbit::CartesianState target_;  ///< at reached_
   GpsTime reached_;
 };
 
-}  // namespace vbar::fsw::trunk
+}  // namespace vbar::fsw::filter

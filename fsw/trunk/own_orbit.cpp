@@ -6,7 +6,7 @@
 #include "fsw/navigation/dynamics.h"
 #include "fsw/orbit/constants.h"
 
-namespace vbar::fsw::trunk {
+namespace vbar::fsw::filter {
 namespace {
 
 constexpr int kSlowError = 6;
@@ -21,18 +21,18 @@ constexpr double square(double x) {
 
 }  // namespace
 
-void OwnOrbit::begin(const orbit::CartesianState& state, double sigma_m, double sigma_mps) {
+void AbsoluteOrbitFilter::initialize(const orbit::CartesianState& state, double sigma_m, double sigma_mps) {
   for (int axis = 0; axis < 3; ++axis) {
     estimate_.reset(axis, state.position_eci(axis), square(sigma_m));
     estimate_.reset(3 + axis, state.velocity_eci(axis), square(sigma_mps));
     estimate_.reset(kSlowError + axis, 0.0, square(settings_.slow_error_sigma_m));
   }
   started_ = true;
-  refused_in_a_row_ = 0;
+  rejected_in_a_row_ = 0;
 }
 
 /// Velocity from two positions: the chord, corrected for the curvature due to the point mass.
-void OwnOrbit::begin_from_two(GpsTime time, const OwnPosition& measured) {
+void AbsoluteOrbitFilter::initialize_from_two(GpsTime time, const AbsolutePosition& measured) {
   const double baseline =
       first_.is_known ? seconds(time - first_.time) - measured.early_s + first_.position.early_s : 0.0;
   if (!first_.is_known || !(baseline >= 0.0) || baseline > kMaxBaseline_s) {
@@ -46,15 +46,15 @@ void OwnOrbit::begin_from_two(GpsTime time, const OwnPosition& measured) {
   const Vector3 velocity = (measured.position_eci - first_.position.position_eci) / baseline + 0.5 * baseline * gravity;
   const double noise_m = math::sqrt(measured.covariance_m2.trace() / 3.0);
   const double sigma_m = math::hypot(noise_m, settings_.slow_error_sigma_m);
-  begin({.position_eci = measured.position_eci + measured.early_s * velocity, .velocity_eci = velocity}, sigma_m,
-        settings_.start_velocity_sigma + 2.0 * noise_m / baseline);
+  initialize({.position_eci = measured.position_eci + measured.early_s * velocity, .velocity_eci = velocity}, sigma_m,
+             settings_.start_velocity_sigma + 2.0 * noise_m / baseline);
   first_.is_known = false;
 }
 
-bool OwnOrbit::take(GpsTime time, const OwnPosition& measured) {
+bool AbsoluteOrbitFilter::process(GpsTime time, const AbsolutePosition& measured) {
   nis_ = 0.0;
   if (!started_) {
-    begin_from_two(time, measured);
+    initialize_from_two(time, measured);
     return true;
   }
   const Vector3 position = measured.position_eci + measured.early_s * state().velocity_eci;
@@ -73,11 +73,11 @@ bool OwnOrbit::take(GpsTime time, const OwnPosition& measured) {
   if (!noise.ok()) return false;
   nis_ = joint.ok() ? joint.solve_lower(residual).squaredNorm() : kNoGate;
   if (!(nis_ <= settings_.gate)) {
-    if (++refused_in_a_row_ < kMaxRefused) return false;
+    if (++rejected_in_a_row_ < kMaxRejected) return false;
     widen(residual.norm());
-    return take(time, measured);
+    return process(time, measured);
   }
-  refused_in_a_row_ = 0;
+  rejected_in_a_row_ = 0;
   // Whitened, then one axis after the other.
   const Estimate::Vector old = estimate_.mean();
   const Vector3 whitened = noise.solve_lower(residual);
@@ -95,24 +95,24 @@ bool OwnOrbit::take(GpsTime time, const OwnPosition& measured) {
 
 /// Persistent contradiction: the orbit stays, as after an unknown burn, so that what refers to it is propagated with
 /// it.
-void OwnOrbit::widen(double residual_m) {
+void AbsoluteOrbitFilter::widen(double residual_m) {
   const double velocity_sigma = std::max(settings_.start_velocity_sigma, residual_m / kMaxBaseline_s);
   for (int axis = 0; axis < 3; ++axis) {
     estimate_.add_noise(axis, square(residual_m));
     estimate_.add_noise(3 + axis, square(velocity_sigma));
   }
-  refused_in_a_row_ = 0;
+  rejected_in_a_row_ = 0;
   ++inflations_;
 }
 
-void OwnOrbit::fail() {
+void AbsoluteOrbitFilter::fail() {
   started_ = false;
   first_.is_known = false;
-  refused_in_a_row_ = 0;
+  rejected_in_a_row_ = 0;
 }
 
 /// The covariance is propagated by the Jacobian of point mass and J2, from differences of 100 m and 0.1 m/s.
-void OwnOrbit::advance(const navigation::Propagation& propagation, double dt) {
+void AbsoluteOrbitFilter::advance(const navigation::Propagation& propagation, double dt) {
   if (!started_ || dt == 0.0) return;
   const orbit::CartesianState old = state();
   const orbit::CartesianState later = propagation.coast(old, dt);
@@ -143,7 +143,7 @@ void OwnOrbit::advance(const navigation::Propagation& propagation, double dt) {
   if (!estimate_.is_sound()) fail();
 }
 
-void OwnOrbit::add_impulse(const Vector3& dv_eci, double sigma) {
+void AbsoluteOrbitFilter::add_impulse(const Vector3& dv_eci, double sigma) {
   if (!started_) return;
   for (int axis = 0; axis < 3; ++axis) {
     estimate_.shift(3 + axis, dv_eci(axis));
@@ -151,4 +151,4 @@ void OwnOrbit::add_impulse(const Vector3& dv_eci, double sigma) {
   }
 }
 
-}  // namespace vbar::fsw::trunk
+}  // namespace vbar::fsw::filter

@@ -11,9 +11,9 @@
 #include "fsw/navigation/propagation.h"
 #include "fsw/orbit/elements.h"
 
-namespace vbar::fsw::trunk {
+namespace vbar::fsw::filter {
 
-struct OwnOrbitSettings {
+struct AbsoluteOrbitSettings {
   double slow_error_sigma_m = 1.5;    ///< of single-point positions, per axis
   double slow_error_time_s = 1800.0;  ///< its correlation time
   double acceleration_psd = 1e-9;     ///< m^2/s^3: Sun, Moon and tides, 1.5e-6 m/s^2 that vary with the orbit
@@ -22,17 +22,17 @@ struct OwnOrbitSettings {
 };
 
 /// A single-point position of the servicer's centre of mass.
-struct OwnPosition {
+struct AbsolutePosition {
   Vector3 position_eci = Vector3::Zero();       ///< m, at reception
   Matrix3 covariance_m2 = Matrix3::Identity();  ///< of its noise; the slow error is a state
   double early_s = 0.0;                         ///< the position is this much before the tag: the receiver clock
 };
 
-class OwnOrbit {
+class AbsoluteOrbitFilter {
  public:
   using Estimate = estimation::Estimate<9>;
 
-  void configure(const OwnOrbitSettings& settings) { settings_ = settings; }
+  void configure(const AbsoluteOrbitSettings& settings) { settings_ = settings; }
 
   [[nodiscard]] bool started() const { return started_; }
   [[nodiscard]] orbit::CartesianState state() const {
@@ -45,11 +45,11 @@ class OwnOrbit {
   [[nodiscard]] int inflations() const { return inflations_; }
 
   /// Initialises with a known state; `sigma_m` and `sigma_mps` per axis.
-  void begin(const orbit::CartesianState& state, double sigma_m, double sigma_mps);
+  void initialize(const orbit::CartesianState& state, double sigma_m, double sigma_mps);
 
   /// Processes a position at the epoch. The second one within two minutes initialises the orbit; one beyond the gate is
-  /// refused (false), and the last of kMaxRefused consecutive refusals inflates the covariance in order to be used.
-  bool take(GpsTime time, const OwnPosition& measured);
+  /// rejected (false), and the last of kMaxRejected consecutive rejections inflates the covariance in order to be used.
+  bool process(GpsTime time, const AbsolutePosition& measured);
 
   /// Normalised innovation squared of the last position, three degrees of freedom; 0 of one that initialises the orbit.
   [[nodiscard]] double nis() const { return nis_; }
@@ -58,26 +58,26 @@ class OwnOrbit {
   /// A burn (m/s, ECI), known to `sigma` per axis.
   void add_impulse(const Vector3& dv_eci, double sigma);
 
-  static constexpr int kMaxRefused = 6;
+  static constexpr int kMaxRejected = 6;
 
  private:
   struct First {
     bool is_known = false;
     GpsTime time;
-    OwnPosition position;
+    AbsolutePosition position;
   };
 
-  void begin_from_two(GpsTime time, const OwnPosition& measured);
+  void initialize_from_two(GpsTime time, const AbsolutePosition& measured);
   void widen(double residual_m);
   void fail();
 
-  OwnOrbitSettings settings_;
+  AbsoluteOrbitSettings settings_;
   bool started_ = false;
   First first_;
-  int refused_in_a_row_ = 0;
+  int rejected_in_a_row_ = 0;
   int inflations_ = 0;
   double nis_ = 0.0;
   Estimate estimate_;
 };
 
-}  // namespace vbar::fsw::trunk
+}  // namespace vbar::fsw::filter

@@ -5,7 +5,7 @@
 #include "fsw/estimation/unscented.h"
 #include "fsw/orbit/rtn.h"
 
-namespace vbar::fsw::trunk {
+namespace vbar::fsw::filter {
 namespace {
 
 constexpr int kAlongTrack = kAt<DifferentialAccelerations>;
@@ -23,22 +23,23 @@ void RelativeOrbit::configure(const RelativeOrbitSettings& settings) {
   settings_ = settings;
 }
 
-void RelativeOrbit::begin(Estimate& estimate, const Vector6& roe, const Matrix6& covariance) {
+void RelativeOrbit::initialize(Estimate& estimate, const Vector6& roe, const Matrix6& covariance) {
   for (int k = 0; k < Roe::kSize; ++k) estimate.reset(k, 0.0, 0.0);
   estimate.transform_head<Roe::kSize>(roe, Matrix6::Identity(), covariance);
-  begin_process(estimate, kAlongTrack, settings_.along_track);
-  begin_process(estimate, kFromSun, settings_.from_sun);
+  initialize_process(estimate, kAlongTrack, settings_.along_track);
+  initialize_process(estimate, kFromSun, settings_.from_sun);
   noise_.interrupt();
 }
 
-void RelativeOrbit::rest(Estimate& estimate) const {
-  rest_block<EmpiricalAcceleration>(estimate);
-  rest_block<DifferentialAccelerations>(estimate);
-  rest_block<Roe>(estimate);
+void RelativeOrbit::deactivate(Estimate& estimate) const {
+  deactivate_block<EmpiricalAcceleration>(estimate);
+  deactivate_block<DifferentialAccelerations>(estimate);
+  deactivate_block<Roe>(estimate);
 }
 
-void RelativeOrbit::begin_empirical(Estimate& estimate) const {
-  if (!is_active<EmpiricalAcceleration>(estimate)) begin_block<EmpiricalAcceleration>(estimate, settings_.empirical);
+void RelativeOrbit::activate_empirical(Estimate& estimate) const {
+  if (!is_active<EmpiricalAcceleration>(estimate))
+    initialize_block<EmpiricalAcceleration>(estimate, settings_.empirical);
 }
 
 bool RelativeOrbit::advance(const Estimate& estimate, const OrbitStep& step, HeadMotion& motion) const {
@@ -154,4 +155,4 @@ Matrix6 covariance_rtn(const Estimate& estimate, const orbit::CartesianState& se
   return jacobian.lazyProduct(estimate.head_covariance<6>()).lazyProduct(jacobian.transpose());
 }
 
-}  // namespace vbar::fsw::trunk
+}  // namespace vbar::fsw::filter

@@ -12,7 +12,7 @@
 #include "fsw/orbit/roe.h"
 #include "fsw/trunk/state.h"
 
-namespace vbar::fsw::trunk {
+namespace vbar::fsw::filter {
 
 struct RelativeOrbitSettings {
   navigation::AdaptiveNoiseSettings acceleration;  ///< of all other effects, m^2/s^3, while `empirical` is inactive
@@ -43,10 +43,10 @@ class RelativeOrbit {
   void configure(const RelativeOrbitSettings& settings);
 
   /// Initialises with ROE (dimensionless) and their covariance; correlations with all other blocks end.
-  void begin(Estimate& estimate, const Vector6& roe, const Matrix6& covariance);
-  void rest(Estimate& estimate) const;
+  void initialize(Estimate& estimate, const Vector6& roe, const Matrix6& covariance);
+  void deactivate(Estimate& estimate) const;
   /// Activates the empirical acceleration if it is inactive.
-  void begin_empirical(Estimate& estimate) const;
+  void activate_empirical(Estimate& estimate) const;
 
   /// Propagates by sigma points through both orbits; false if an orbit is invalid.
   [[nodiscard]] bool advance(const Estimate& estimate, const OrbitStep& step, HeadMotion& motion) const;
@@ -75,4 +75,4 @@ class RelativeOrbit {
 /// Jacobian of the exact map, from finite differences. Zero if the orbit is invalid.
 Matrix6 covariance_rtn(const Estimate& estimate, const orbit::CartesianState& servicer);
 
-}  // namespace vbar::fsw::trunk
+}  // namespace vbar::fsw::filter

@@ -17,7 +17,7 @@
 #include "fsw/estimation/rows.h"
 #include "fsw/sources/state_blocks.h"
 
-namespace vbar::fsw::trunk {
+namespace vbar::fsw::filter {
 
 using estimation::GaussMarkov;
 
@@ -59,19 +59,19 @@ static_assert(kAt<Turn> == kOrbitSize && kHeadSize == kOrbitSize + kAttitudeSize
 
 /// Activates a block with the stationary distribution of its process.
 template <class Block>
-void begin_block(Estimate& estimate, const GaussMarkov& process) {
-  for (int k = 0; k < Block::kSize; ++k) begin_process(estimate, kAt<Block> + k, process);
+void initialize_block(Estimate& estimate, const GaussMarkov& process) {
+  for (int k = 0; k < Block::kSize; ++k) initialize_process(estimate, kAt<Block> + k, process);
 }
 
 /// Deactivates a block: variance zero, mean zero. No other block changes.
 template <class Block>
-void rest_block(Estimate& estimate) {
+void deactivate_block(Estimate& estimate) {
   for (int k = Block::kSize; k-- > 0;) estimate.reset(kAt<Block> + k, 0.0, 0.0);
 }
 
 template <class Block>
 [[nodiscard]] bool is_active(const Estimate& estimate) {
-  return !estimate.is_idle(kAt<Block>);
+  return !estimate.is_inactive(kAt<Block>);
 }
 
-}  // namespace vbar::fsw::trunk
+}  // namespace vbar::fsw::filter

@@ -4,7 +4,7 @@
 
 #include "fsw/estimation/unscented.h"
 
-namespace vbar::fsw::trunk {
+namespace vbar::fsw::filter {
 namespace {
 
 constexpr int kTurn = kAt<Turn>;
@@ -21,13 +21,14 @@ void TargetAttitude::configure(const TargetAttitudeSettings& settings) {
   settings_ = settings;
 }
 
-void TargetAttitude::begin(Estimate& estimate, const navigation::AttitudeState& attitude, const Matrix6& covariance) {
+void TargetAttitude::initialize(Estimate& estimate, const navigation::AttitudeState& attitude,
+                                const Matrix6& covariance) {
   attitude_ = attitude;
   for (int axis = 0; axis < 3; ++axis) {
     estimate.reset(kTurn + axis, 0.0, 0.0);
     estimate.reset(kRate + axis, attitude.rate_body(axis), 0.0);
   }
-  rest_block<InertiaRatios>(estimate);
+  deactivate_block<InertiaRatios>(estimate);
   HeadMotion motion;
   motion.mean = estimate.mean().head<kHeadSize>();
   motion.noise.block<6, 6>(kTurn, kTurn) = covariance;
@@ -35,15 +36,15 @@ void TargetAttitude::begin(Estimate& estimate, const navigation::AttitudeState& 
   noise_.interrupt();
 }
 
-void TargetAttitude::rest(Estimate& estimate) const {
-  rest_block<InertiaRatios>(estimate);
-  rest_block<Rate>(estimate);
-  rest_block<Turn>(estimate);
+void TargetAttitude::deactivate(Estimate& estimate) const {
+  deactivate_block<InertiaRatios>(estimate);
+  deactivate_block<Rate>(estimate);
+  deactivate_block<Turn>(estimate);
 }
 
-void TargetAttitude::begin_inertia_ratios(Estimate& estimate) const {
+void TargetAttitude::activate_inertia_ratios(Estimate& estimate) const {
   if (is_active<InertiaRatios>(estimate)) return;
-  begin_block<InertiaRatios>(estimate, {.sigma = settings_.inertia_ratio_sigma});
+  initialize_block<InertiaRatios>(estimate, {.sigma = settings_.inertia_ratio_sigma});
 }
 
 /// The model's tensor with J_yy / J_xx and J_zz / J_xx multiplied by the exponentials: row and column scaled alike, so
@@ -130,4 +131,4 @@ double attitude_sigma(const Estimate& estimate) {
   return math::sqrt(greatest);
 }
 
-}  // namespace vbar::fsw::trunk
+}  // namespace vbar::fsw::filter

@@ -6,7 +6,7 @@
 #include "fsw/navigation/pose_attitude.h"
 #include "fsw/trunk/relative_orbit.h"
 
-namespace vbar::fsw::trunk {
+namespace vbar::fsw::filter {
 
 struct TargetAttitudeSettings {
   navigation::Inertia inertia;  ///< only its ratios matter
@@ -24,11 +24,11 @@ class TargetAttitude {
 
   /// Initialises attitude and rate; covariance of the rotation in body axes (rad) and the rate (rad/s). Correlations
   /// with all other blocks end.
-  void begin(Estimate& estimate, const navigation::AttitudeState& attitude, const Matrix6& covariance);
-  void rest(Estimate& estimate) const;
+  void initialize(Estimate& estimate, const navigation::AttitudeState& attitude, const Matrix6& covariance);
+  void deactivate(Estimate& estimate) const;
   [[nodiscard]] static bool is_known(const Estimate& estimate) { return is_active<Turn>(estimate); }
   /// Activates the inertia ratios, for a target observed over an hour and more.
-  void begin_inertia_ratios(Estimate& estimate) const;
+  void activate_inertia_ratios(Estimate& estimate) const;
 
   /// Propagates by sigma points; false if the covariance is not positive definite.
   [[nodiscard]] bool advance(const Estimate& estimate, const OrbitStep& step, HeadMotion& motion);
@@ -54,4 +54,4 @@ Matrix6 attitude_covariance(const Estimate& estimate);
 /// 1 sigma of the body axis with the largest uncertainty, rad.
 double attitude_sigma(const Estimate& estimate);
 
-}  // namespace vbar::fsw::trunk
+}  // namespace vbar::fsw::filter

@@ -1,8 +1,8 @@
 #pragma once
-// The navigation trunk: the servicer's own orbit and one relative estimate for all sensors, at one epoch.
+// The relative navigation filter: the servicer's own orbit and one relative estimate for all sensors, at one epoch.
 //
-// Sources (fsw/sources) turn records of their sensors into batches of measurements; the trunk propagates, is updated by
-// batches, and does not depend on which sensor they came from: the blocks of the sources are a list, whose members
+// Sources (fsw/sources) turn records of their sensors into batches of measurements; the filter propagates, is updated
+// by batches, and does not depend on which sensor they came from: the blocks of the sources are a list, whose members
 // carry their own process models. Activating or deactivating a block changes no other block; no source re-initialises
 // the own orbit.
 
@@ -21,24 +21,24 @@
 #include "fsw/trunk/state.h"
 #include "fsw/trunk/target_attitude.h"
 
-namespace vbar::fsw::trunk {
+namespace vbar::fsw::filter {
 
 /// 1-sigma values of the initial states and of unmodelled effects.
-struct TrunkSettings {
+struct FilterSettings {
   orbit::EarthOrientation earth;
   double burn_sigma = 2e-6;           ///< m/s, per axis of a burn
   double burn_sigma_relative = 1e-3;  ///< of its size
-  OwnOrbitSettings own_orbit;
+  AbsoluteOrbitSettings absolute_orbit;
   RelativeOrbitSettings relative_orbit;
   TargetAttitudeSettings attitude;
   estimation::BlockSettings<MeasurementBlocks> processes;  ///< of the blocks of measurement sources
 };
 
 /// How the relative orbit is known.
-enum class RelativeKnowledge : std::uint8_t {
+enum class SolutionStatus : std::uint8_t {
   kNone,
   kApriori,       ///< from the a-priori orbit alone: sufficient to point a camera, not to plan
-  kContradicted,  ///< estimated, but contradicted by measurements: a source has to initialise it again
+  kInconsistent,  ///< estimated, but contradicted by measurements: a source has to initialise it again
   kEstimated,     ///< from measurements, or a-priori ROE of preceding navigation
 };
 
@@ -59,11 +59,11 @@ struct Impulse {
   Vector3 dv_rtn = Vector3::Zero();  ///< the same, in the servicer's RTN before it
 };
 
-class Trunk {
+class RelativeNavigationFilter {
  public:
   /// Replaces the settings. Estimates stay; a block that is active keeps its present value and variance.
-  void configure(const TrunkSettings& settings);
-  [[nodiscard]] const TrunkSettings& settings() const { return settings_; }
+  void configure(const FilterSettings& settings);
+  [[nodiscard]] const FilterSettings& settings() const { return settings_; }
 
   /// A new a-priori orbit of the target. It is used while nothing better is known.
   void set_apriori(const TargetApriori& apriori);
@@ -78,23 +78,23 @@ class Trunk {
   [[nodiscard]] std::span<const Impulse> impulses() const { return std::span(impulses_).first(impulse_count_); }
   static constexpr std::size_t kMaxImpulses = 32;
 
-  /// A single-point position at the epoch; false if it was refused.
-  bool take_own_position(const OwnPosition& position);
-  [[nodiscard]] const OwnOrbit& own_orbit() const { return own_orbit_; }
-  [[nodiscard]] orbit::CartesianState servicer() const { return own_orbit_.state(); }
+  /// A single-point position at the epoch; false if it was rejected.
+  bool update_absolute_orbit(const AbsolutePosition& position);
+  [[nodiscard]] const AbsoluteOrbitFilter& absolute_orbit() const { return absolute_orbit_; }
+  [[nodiscard]] orbit::CartesianState servicer() const { return absolute_orbit_.state(); }
   /// Both states at the epoch are known (ideal navigation): initialises both estimates with negligible covariance.
   void set_states(const orbit::CartesianState& servicer, const orbit::CartesianState& target);
 
   /// Initialises the relative orbit (dimensionless ROE); all blocks but the attitude's keep their state.
-  void begin_relative(const Vector6& roe, const Matrix6& covariance, RelativeKnowledge knowledge);
+  void initialize_relative(const Vector6& roe, const Matrix6& covariance, SolutionStatus solution_status);
   /// Contradicting measurements: the present estimate no longer suffices to plan.
-  void distrust_relative() {
-    if (knowledge_ == RelativeKnowledge::kEstimated) knowledge_ = RelativeKnowledge::kContradicted;
+  void mark_inconsistent() {
+    if (solution_status_ == SolutionStatus::kEstimated) solution_status_ = SolutionStatus::kInconsistent;
   }
-  [[nodiscard]] RelativeKnowledge knowledge() const {
-    return own_orbit_.started() ? knowledge_ : RelativeKnowledge::kNone;
+  [[nodiscard]] SolutionStatus solution_status() const {
+    return absolute_orbit_.started() ? solution_status_ : SolutionStatus::kNone;
   }
-  [[nodiscard]] bool has_relative() const { return knowledge() != RelativeKnowledge::kNone; }
+  [[nodiscard]] bool has_relative() const { return solution_status() != SolutionStatus::kNone; }
   /// kNotReady without a relative orbit.
   [[nodiscard]] Result<orbit::CartesianState> target() const;
 
@@ -106,10 +106,10 @@ class Trunk {
   /// Covariance of the target's position from the servicer, ECI axes, m^2; zero if there is none.
   [[nodiscard]] Matrix3 position_covariance_eci() const;
 
-  /// Attitude and rate of the target (TargetAttitude::begin); the errors of keypoints are re-initialised.
-  void begin_attitude(const navigation::AttitudeState& attitude, const Matrix6& covariance);
+  /// Attitude and rate of the target (TargetAttitude::initialize); the errors of keypoints are re-initialised.
+  void initialize_attitude(const navigation::AttitudeState& attitude, const Matrix6& covariance);
   /// Deactivates the attitude, the errors of keypoints and the origin of the keypoints; the orbit stays.
-  void rest_attitude();
+  void deactivate_attitude();
   [[nodiscard]] bool has_attitude() const { return TargetAttitude::is_known(estimate_); }
   [[nodiscard]] TargetAttitude& attitude() { return attitude_; }
   [[nodiscard]] const TargetAttitude& attitude() const { return attitude_; }
@@ -153,7 +153,7 @@ class Trunk {
   /// of the relative orbit is multiplied by it.
   void scale_relative_covariance(double factor);
   /// The same of the servicer's own orbit as inflate_relative().
-  void inflate_own_orbit(double velocity_sigma);
+  void inflate_absolute_orbit(double velocity_sigma);
 
   /// Times that the relative estimate had to be discarded because it was not a covariance any more.
   [[nodiscard]] int failures() const { return failures_; }
@@ -166,11 +166,11 @@ class Trunk {
   void keep_relative_state(const orbit::CartesianState& servicer_before, const orbit::CartesianState& target_before);
   void fail_relative();
 
-  TrunkSettings settings_;
+  FilterSettings settings_;
   GpsTime epoch_;
-  OwnOrbit own_orbit_;
+  AbsoluteOrbitFilter absolute_orbit_;
   std::optional<Apriori> apriori_;
-  RelativeKnowledge knowledge_ = RelativeKnowledge::kNone;
+  SolutionStatus solution_status_ = SolutionStatus::kNone;
   RelativeOrbit relative_orbit_;
   TargetAttitude attitude_;
   Estimate estimate_;
@@ -183,4 +183,4 @@ class Trunk {
   MeasurementBatch workspace_;
 };
 
-}  // namespace vbar::fsw::trunk
+}  // namespace vbar::fsw::filter

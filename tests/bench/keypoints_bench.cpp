@@ -1,4 +1,4 @@
-// Keypoints as an aid of the trunk: what 5 s between images and an image's eleven keypoints cost.
+// Keypoints as an aid of the filter: what 5 s between images and an image's eleven keypoints cost.
 
 #include <cstdlib>
 #include <memory>
@@ -20,7 +20,7 @@ void image(benchmark::State& state) {
   KeypointFlight flown(flight, {.has_dark = false}, 1.0, 1, fsw::sources::flight_blocks(flight),
                        fsw::sources::flight_settings());
   for (int k = 0; k < kSettling; ++k) flown.step();
-  if (!flown.trunk->has_attitude()) std::abort();
+  if (!flown.filter->has_attitude()) std::abort();
   std::vector<test::MeasuredEpoch> epochs;
   std::vector<fsw::pose::Keypoints> keypoints;
   for (int k = 0; k < kImages; ++k) {
@@ -29,20 +29,20 @@ void image(benchmark::State& state) {
   }
   for (auto _ : state) {
     state.PauseTiming();
-    const auto trunk = std::make_unique<fsw::trunk::Trunk>(*flown.trunk);
+    const auto filter = std::make_unique<fsw::filter::RelativeNavigationFilter>(*flown.filter);
     const auto aiding = std::make_unique<fsw::sources::KeypointAiding>(*flown.aiding);
     state.ResumeTiming();
     for (std::size_t k = 0; k < epochs.size(); ++k) {
-      trunk->advance_to(epochs[k].time, {});
+      filter->advance_to(epochs[k].time, {});
       aiding->process({.time = epochs[k].time,
                        .camera = flown.camera,
                        .sun_eci = epochs[k].sun_eci,
                        .R_camera_eci = epochs[k].R_camera_eci,
                        .keypoints = &keypoints[k],
                        .pnp = epochs[k].pnp},
-                      *trunk);
+                      *filter);
     }
-    benchmark::DoNotOptimize(trunk->roe());
+    benchmark::DoNotOptimize(filter->roe());
   }
   state.counters["image"] = benchmark::Counter(static_cast<double>(kImages * state.iterations()),
                                                benchmark::Counter::kIsRate | benchmark::Counter::kInvert);

@@ -1,4 +1,4 @@
-// Carrier phase as an aid of the trunk: what a pair of epochs of two receivers costs once its integers are held.
+// Carrier phase as an aid of the filter: what a pair of epochs of two receivers costs once its integers are held.
 
 #include <cstdlib>
 #include <memory>
@@ -11,20 +11,20 @@
 namespace {
 
 using namespace vbar::fsw;
-using sources::test::TrunkPair;
+using sources::test::FilterPair;
 
 constexpr int kSettling = 60;
 constexpr int kEpochs = 60;
 constexpr Duration kPeriod = duration_of_seconds(10);
 
 void epoch(benchmark::State& state, double wander_sigma_m) {
-  TrunkPair pair(1);
+  FilterPair pair(1);
   if (wander_sigma_m > 0.0)
-    pair.trunk_settings.processes.of<fsw::sources::PhaseWander>() = {.sigma = wander_sigma_m, .time_s = 60.0};
-  pair.begin_trunk();
+    pair.filter_settings.processes.of<fsw::sources::PhaseWander>() = {.sigma = wander_sigma_m, .time_s = 60.0};
+  pair.begin_filter();
   pair.fly_trunk(kSettling);
   if (!pair.carrier->is_fixed()) std::abort();
-  const trunk::Trunk settled = *pair.estimator;
+  const filter::RelativeNavigationFilter settled = *pair.estimator;
   const sources::CarrierAiding settled_carrier = *pair.carrier;
   const sources::OwnGnssAiding settled_own = *pair.own;
   const GpsTime start = pair.tag;

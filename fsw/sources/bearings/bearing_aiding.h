@@ -1,5 +1,5 @@
 #pragma once
-// Bearings of a camera as an aid of the trunk: the initial relative orbit from a batch with the a-priori orbit, then
+// Bearings of a camera as an aid of the filter: the initial relative orbit from a batch with the a-priori orbit, then
 // rows at each image.
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct BearingSettings {
 };
 
 /// Edit status of a bearing; numbers of telemetry_image, edit status.
-enum class BearingEditStatus : std::uint8_t { kNone, kRefused, kFilter, kBatch };
+enum class BearingEditStatus : std::uint8_t { kNone, kRejected, kFilter, kBatch };
 
 /// Result of one bearing. Residuals in rad, in the rows of bearing_axes().
 struct BearingUpdate {
@@ -32,30 +32,30 @@ struct BearingUpdate {
 
 struct BearingCounters {
   std::int32_t used = 0;
-  std::int32_t refused = 0;
+  std::int32_t rejected = 0;
   std::int32_t batches_failed = 0;
-  std::int32_t inflations = 0;  ///< of the covariance, after consecutive refusals
+  std::int32_t inflations = 0;  ///< of the covariance, after consecutive rejections
   std::int32_t restarts = 0;    ///< of the batch, after the orbit had been initialised
 };
 
 class BearingAiding {
  public:
-  static constexpr trunk::MeasurementSource kSource{.bit = navigation_configuration::kUseBearings,
-                                                    .confirms_orbit = true};
+  static constexpr filter::MeasurementSource kSource{.bit = navigation_configuration::kUseBearings,
+                                                     .confirms_orbit = true};
 
   /// Replaces the settings; a batch being collected stays unless its settings change.
   void configure(const BearingSettings& settings);
 
-  /// Processes the bearing of an image; the trunk stands at its time. Must be called for images without a bearing too,
+  /// Processes the bearing of an image; the filter stands at its time. Must be called for images without a bearing too,
   /// so that the burns since the last image enter the batch.
   BearingEditStatus process(GpsTime time, const std::optional<navigation::BearingMeasurement>& bearing,
-                            const Vector3& sun_eci, trunk::Trunk& trunk);
+                            const Vector3& sun_eci, filter::RelativeNavigationFilter& filter);
 
   /// Nothing was measured until `now`: the state follows the age of the last accepted bearing.
   void check_age(GpsTime now);
 
   /// Deactivates the own blocks; the orbit stays.
-  void stop(GpsTime now, trunk::Trunk& trunk);
+  void stop(GpsTime now, filter::RelativeNavigationFilter& filter);
 
   [[nodiscard]] const Aid& aid() const { return aid_; }
   [[nodiscard]] Aid& aid() { return aid_; }
@@ -64,26 +64,27 @@ class BearingAiding {
   [[nodiscard]] const BearingCounters& counters() const { return counters_; }
 
  private:
-  void follow_burns(const trunk::Trunk& trunk);
-  void activate_blocks(trunk::Trunk& trunk) const;
-  void rest_blocks(trunk::Trunk& trunk) const;
-  BearingEditStatus collect(const navigation::BearingMeasurement& bearing, const Vector3& sun_eci, trunk::Trunk& trunk);
+  void follow_burns(const filter::RelativeNavigationFilter& filter);
+  void activate_blocks(filter::RelativeNavigationFilter& filter) const;
+  void deactivate_blocks(filter::RelativeNavigationFilter& filter) const;
+  BearingEditStatus collect(const navigation::BearingMeasurement& bearing, const Vector3& sun_eci,
+                            filter::RelativeNavigationFilter& filter);
   BearingEditStatus process_measurement(const navigation::BearingMeasurement& bearing, const Vector3& sun_eci,
-                                        trunk::Trunk& trunk);
-  void adapt_noise(const navigation::BearingMeasurement& bearing, const trunk::MeasurementBatch& batch,
-                   trunk::Trunk& trunk);
-  void adapt_centroid_noise(const trunk::Trunk& trunk);
-  void count_refusal(GpsTime time, trunk::Trunk& trunk);
+                                        filter::RelativeNavigationFilter& filter);
+  void adapt_noise(const navigation::BearingMeasurement& bearing, const filter::MeasurementBatch& batch,
+                   filter::RelativeNavigationFilter& filter);
+  void adapt_centroid_noise(const filter::RelativeNavigationFilter& filter);
+  void count_rejection(GpsTime time, filter::RelativeNavigationFilter& filter);
 
   BearingSettings settings_;
   Aid aid_;
   navigation::BearingBatch batch_;
-  GpsTime burns_until_;  ///< impulses of the trunk before this are in the batch
+  GpsTime burns_until_;  ///< impulses of the filter before this are in the batch
   GpsTime last_accepted_;
-  GpsTime last_folded_;
-  int refused_in_a_row_ = 0;
-  int refused_in_excess_ = 0;  ///< of accepted ones, while others confirm the orbit
-  int agreeing_in_a_row_ = 0;  ///< while contradicting
+  GpsTime last_processed_;
+  int rejected_in_a_row_ = 0;
+  int rejected_in_excess_ = 0;  ///< of accepted ones, while others confirm the orbit
+  int agreeing_in_a_row_ = 0;   ///< while contradicting
   std::size_t inflations_in_a_row_ = 0;
   double centroid_scale_ =
       1.0;  ///< factor on the variances of the centroid, adapted while receivers determine the orbit

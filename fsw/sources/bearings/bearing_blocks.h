@@ -30,7 +30,7 @@ struct CentroidWander {
                         const Adaptation& adaptation, const estimation::BlockStep& step) {
     estimation::GaussMarkov process = settings;
     process.sigma *= math::sqrt(adaptation.variance_factor);
-    estimation::advance_components<State, CentroidWander>(estimate, process, step);
+    estimation::propagate_components<State, CentroidWander>(estimate, process, step);
   }
 };
 

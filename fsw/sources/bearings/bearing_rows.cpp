@@ -8,7 +8,7 @@
 namespace vbar::fsw::sources {
 namespace {
 
-using trunk::kAt;
+using filter::kAt;
 
 constexpr double square(double x) {
   return x * x;
@@ -16,15 +16,16 @@ constexpr double square(double x) {
 
 }  // namespace
 
-Status bearing_rows(const trunk::Trunk& trunk, const navigation::BearingMeasurement& bearing, const Vector3& sun_eci,
-                    const BearingModel& model, trunk::MeasurementBatch& batch) {
-  using Transform = estimation::UnscentedTransform<trunk::Roe::kSize>;
-  const orbit::CartesianState servicer = trunk.servicer();
+Status bearing_rows(const filter::RelativeNavigationFilter& filter, const navigation::BearingMeasurement& bearing,
+                    const Vector3& sun_eci, const BearingModel& model, filter::MeasurementBatch& batch) {
+  using Transform = estimation::UnscentedTransform<filter::Roe::kSize>;
+  const orbit::CartesianState servicer = filter.servicer();
   const auto chief = orbit::qns_from_cartesian(servicer);
   if (!chief.ok()) return chief.status();
   Transform transform;
-  if (const Status status = transform.start(trunk.roe(), trunk.roe_covariance()); status != Status::kOk) return status;
-  const trunk::Estimate& estimate = trunk.estimate();
+  if (const Status status = transform.start(filter.roe(), filter.roe_covariance()); status != Status::kOk)
+    return status;
+  const filter::Estimate& estimate = filter.estimate();
   const Matrix3 axes = navigation::bearing_axes(bearing.direction_eci, servicer);
   const Vector3 camera = servicer.position_eci + bearing.origin_eci;
   batch.clear(2);

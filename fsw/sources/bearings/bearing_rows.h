@@ -1,5 +1,5 @@
 #pragma once
-// Measurement model of a bearing: rows of the trunk.
+// Measurement model of a bearing: rows of the filter.
 
 #include "fsw/navigation/bearing.h"
 #include "fsw/trunk/trunk.h"
@@ -16,11 +16,11 @@ struct BearingModel {
 };
 
 /// Fills the batch with the two components of the measured direction across the predicted one (bearing_axes(), rad).
-/// The trunk stands at the time of the bearing. Any status of the orbit conversions if there is no target to predict.
+/// The filter stands at the time of the bearing. Any status of the orbit conversions if there is no target to predict.
 ///
 /// Model: axes (rho + sun_offset s + wander - o) / |...| + bearing bias; rho is sampled over the ROE, all others
 /// enter linearly.
-Status bearing_rows(const trunk::Trunk& trunk, const navigation::BearingMeasurement& bearing, const Vector3& sun_eci,
-                    const BearingModel& model, trunk::MeasurementBatch& batch);
+Status bearing_rows(const filter::RelativeNavigationFilter& filter, const navigation::BearingMeasurement& bearing,
+                    const Vector3& sun_eci, const BearingModel& model, filter::MeasurementBatch& batch);
 
 }  // namespace vbar::fsw::sources

@@ -72,33 +72,33 @@ void BearingSource::collect(Context& context, RecordFiler records) {
   }
 }
 
-std::optional<GpsTime> BearingSource::owes(GpsTime /*now*/) const {
+std::optional<GpsTime> BearingSource::pending_since(GpsTime /*now*/) const {
   return std::nullopt;
 }
 
-void BearingSource::process_record(const Record& record, Context& context, trunk::Trunk& trunk) {
+void BearingSource::process_record(const Record& record, Context& context, filter::RelativeNavigationFilter& filter) {
   const imaging::ImageAssembly& image = context.inbox.image(camera_);
   if (!image.has_image() || image.image_time() != record.time) return context.inbox.count_unusable_time();
   has_image_ = true;
   const Vector3 sun_eci = orbit::sun_position_gcrf(record.time).normalized();
   const angles_only::Sighting& sighting = tracking_.process(
-      {record.time, image.image_number(), image.tiles_missing(), image.view()}, priors_of(context, sun_eci, trunk));
+      {record.time, image.image_number(), image.tiles_missing(), image.view()}, priors_of(context, sun_eci, filter));
   if (sighting.status == angles_only::SightingStatus::kNoStars) ++images_without_stars_;
   std::optional<navigation::BearingMeasurement> bearing;
   if (sighting.status == angles_only::SightingStatus::kBearing) bearing = sighting.bearing;
-  edit_status_ = aiding_.process(record.time, bearing, sun_eci, trunk);
-  a_roe_m_ = trunk.a_roe_m();
-  a_roe_covariance_m2_ = trunk.a_roe_covariance_m2();
+  edit_status_ = aiding_.process(record.time, bearing, sun_eci, filter);
+  a_roe_m_ = filter.a_roe_m();
+  a_roe_covariance_m2_ = filter.a_roe_covariance_m2();
   last_image_ = record.time;
 }
 
 angles_only::ImagePriors BearingSource::priors_of(const Context& context, const Vector3& sun_eci,
-                                                  const trunk::Trunk& trunk) {
-  const GpsTime time = trunk.epoch();
+                                                  const filter::RelativeNavigationFilter& filter) {
+  const GpsTime time = filter.epoch();
   angles_only::ImagePriors priors;
-  priors.is_orbit_known = trunk.has_relative();
+  priors.is_orbit_known = filter.has_relative();
   if (!priors.is_orbit_known) return priors;
-  priors.servicer = trunk.servicer();
+  priors.servicer = filter.servicer();
   priors.velocity_over_c_eci = orbit::earth_velocity_over_c_gcrf(time) + priors.servicer.velocity_eci / kSpeedOfLight;
   Matrix3 R_body_eci = Matrix3::Identity();
   const auto& pointing = context.platform.pointing;
@@ -106,20 +106,21 @@ angles_only::ImagePriors BearingSource::priors_of(const Context& context, const 
     R_body_eci = R_body_eci_of(*pointing, time, priors.servicer);
     priors.R_camera_eci = tracking_.settings().R_camera_body * R_body_eci;
   }
-  if (const Result<orbit::CartesianState> target = trunk.target(); target.ok()) {
+  if (const Result<orbit::CartesianState> target = filter.target(); target.ok()) {
     orbit::RelativeState relative = orbit::relative_state_rtn(priors.servicer, target.value());
     if (pointing) {
       const Vector3 camera_eci = R_body_eci.transpose() * tracking_.settings().position_body_m;
       relative.position_rtn -= orbit::R_rtn_eci(priors.servicer) * camera_eci;
     }
-    const auto prediction = tracking::prediction_of(relative, trunk::covariance_rtn(trunk.estimate(), priors.servicer));
+    const auto prediction =
+        tracking::prediction_of(relative, filter::covariance_rtn(filter.estimate(), priors.servicer));
     if (prediction.ok()) priors.target = prediction.value();
     priors.detection_probability = detection_probability(target.value(), sun_eci);
   }
   std::size_t count = 0;
-  for (const trunk::Impulse& impulse : trunk.impulses()) {
+  for (const filter::Impulse& impulse : filter.impulses()) {
     if (!last_image_ || impulse.time < *last_image_ || impulse.time >= time) continue;
-    burns_since_image_[count++] = {impulse.time, impulse.dv_rtn, trunk.settings().burn_sigma};
+    burns_since_image_[count++] = {impulse.time, impulse.dv_rtn, filter.settings().burn_sigma};
   }
   priors.burns = std::span(burns_since_image_).first(count);
   return priors;
@@ -164,11 +165,11 @@ void BearingSource::report_image(const Telemetry& telemetry) const {
   }
   message.nis = update.nis;
   message.fate = static_cast<std::int8_t>(edit_status_);
-  message.filter_runs = telemetry.trunk.knowledge() == trunk::RelativeKnowledge::kEstimated ? 1 : 0;
+  message.filter_runs = telemetry.filter.solution_status() == filter::SolutionStatus::kEstimated ? 1 : 0;
   copy(a_roe_m_, message.a_roe_osculating_m);
   gnc::copy_lower_triangle(a_roe_covariance_m2_, message.covariance_a_roe);
   message.bearings_used = aiding_.counters().used;
-  message.bearings_refused = aiding_.counters().refused;
+  message.bearings_refused = aiding_.counters().rejected;
   message.images_without_stars = images_without_stars_;
   message.tiles_refused = telemetry.inbox.image(camera_).counts().tiles_refused;
   telemetry.outbox.send(sighting.time, message, static_cast<std::uint8_t>(camera_));

@@ -19,18 +19,18 @@ class BearingSource {
     Matrix3 R_eci_body = Matrix3::Identity();
   };
   static constexpr std::int32_t kUse = BearingAiding::kSource.bit;
-  /// Of the first camera that is configured for bearings. A change re-initialises the front end, not the trunk.
+  /// Of the first camera that is configured for bearings. A change re-initialises the front end, not the filter.
   bool configure(const Configuration& configuration);
   [[nodiscard]] Aid& aid() { return aiding_.aid(); }
   void collect(Context& context, RecordFiler records);
-  void process_record(const Record& record, Context& context, trunk::Trunk& trunk);
-  [[nodiscard]] std::optional<GpsTime> owes(GpsTime now) const;
+  void process_record(const Record& record, Context& context, filter::RelativeNavigationFilter& filter);
+  [[nodiscard]] std::optional<GpsTime> pending_since(GpsTime now) const;
   [[nodiscard]] const Aid& aid() const { return aiding_.aid(); }
   [[nodiscard]] GpsTime last_measurement() const { return aiding_.last_accepted(); }
   /// Whether the bearing of the last image was processed.
   [[nodiscard]] bool has_aided() const { return last_image_ && *last_image_ == aiding_.last_accepted(); }
-  void watch(GpsTime now, trunk::Trunk& /*trunk*/) { aiding_.check_age(now); }
-  void stop(GpsTime now, trunk::Trunk& trunk) { aiding_.stop(now, trunk); }
+  void watch(GpsTime now, filter::RelativeNavigationFilter& /*filter*/) { aiding_.check_age(now); }
+  void stop(GpsTime now, filter::RelativeNavigationFilter& filter) { aiding_.stop(now, filter); }
   /// By the image of the step, if enough of its stars were identified.
   [[nodiscard]] std::optional<StarAttitude> star_attitude() const;
   /// Telemetry of the image of the step, if there was one.
@@ -38,7 +38,7 @@ class BearingSource {
 
  private:
   [[nodiscard]] angles_only::ImagePriors priors_of(const Context& context, const Vector3& sun_eci,
-                                                   const trunk::Trunk& trunk);
+                                                   const filter::RelativeNavigationFilter& filter);
   void report_image(const Telemetry& telemetry) const;
   void report_objects(const Telemetry& telemetry) const;
 
@@ -46,12 +46,12 @@ class BearingSource {
   std::optional<TwoExposures> exposures_;  ///< if it takes images for keypoints too
   angles_only::AnglesOnlyTracking tracking_;
   BearingAiding aiding_;
-  std::array<tracking::OwnBurn, trunk::Trunk::kMaxImpulses> burns_since_image_{};
+  std::array<tracking::OwnBurn, filter::RelativeNavigationFilter::kMaxImpulses> burns_since_image_{};
   std::optional<GpsTime> last_image_;
   bool has_image_ = false;
   BearingEditStatus edit_status_ = BearingEditStatus::kNone;
   std::int32_t images_without_stars_ = 0;
-  Vector6 a_roe_m_ = Vector6::Zero();  ///< of the trunk at the image, after its update, for telemetry
+  Vector6 a_roe_m_ = Vector6::Zero();  ///< of the filter at the image, after its update, for telemetry
   Matrix6 a_roe_covariance_m2_ = Matrix6::Zero();
 };
 

@@ -16,7 +16,7 @@ struct AmbiguitySettings {
   double min_ratio = 3.0;           ///< minimum ratio of second-best to best squared norm
   int min_epochs = 4;               ///< number of epochs tracked without a break before an ambiguity is considered
   // The integers are released when, in this number of consecutive epochs, the mean normalised innovation squared of the
-  // phases exceeds this (1 if consistent) or more than a third are refused; at once when a third of those contradict.
+  // phases exceeds this (1 if consistent) or more than a third are rejected; at once when a third of those contradict.
   int suspicious_epochs = 3;
   double suspicious_nis = 4.0;
   double release_sigma_m = 0.05;  ///< wrong integers must be released before they shift the position by more than this
@@ -38,10 +38,10 @@ class AmbiguityResolution {
   void reset();
 
   /// Releases all integers (CarrierFilter::release).
-  void release(CarrierFilter& filter, trunk::Trunk& trunk, double position_sigma_m);
+  void release(CarrierFilter& carrier, filter::RelativeNavigationFilter& filter, double position_sigma_m);
 
   /// After each epoch processed.
-  void update(CarrierFilter& filter, trunk::Trunk& trunk, const CarrierUpdate& epoch,
+  void update(CarrierFilter& carrier, filter::RelativeNavigationFilter& filter, const CarrierUpdate& epoch,
               const AmbiguitySettings& settings);
 
   [[nodiscard]] const AmbiguityReport& report() const { return report_; }
@@ -58,11 +58,12 @@ class AmbiguityResolution {
     std::size_t count = 0;
   };
 
-  void gather(const CarrierFilter& filter, int min_epochs);
-  void fill(const CarrierFilter& filter, const trunk::Trunk& trunk);
-  void watch(CarrierFilter& filter, trunk::Trunk& trunk, const CarrierUpdate& epoch, const AmbiguitySettings& settings);
-  void decide(CarrierFilter& filter, trunk::Trunk& trunk, const AmbiguitySettings& settings);
-  void count(const CarrierFilter& filter);
+  void gather(const CarrierFilter& carrier, int min_epochs);
+  void fill(const CarrierFilter& carrier, const filter::RelativeNavigationFilter& filter);
+  void watch(CarrierFilter& carrier, filter::RelativeNavigationFilter& filter, const CarrierUpdate& epoch,
+             const AmbiguitySettings& settings);
+  void decide(CarrierFilter& carrier, filter::RelativeNavigationFilter& filter, const AmbiguitySettings& settings);
+  void count(const CarrierFilter& carrier);
 
   AmbiguityReport report_;
   int suspicious_in_a_row_ = 0;

@@ -17,8 +17,8 @@ constexpr double square(double x) {
   return x * x;
 }
 
-bool has_burn_since(GpsTime time, const trunk::Trunk& trunk) {
-  for (const trunk::Impulse& impulse : trunk.impulses()) {
+bool has_burn_since(GpsTime time, const filter::RelativeNavigationFilter& filter) {
+  for (const filter::Impulse& impulse : filter.impulses()) {
     if (impulse.time >= time) return true;
   }
   return false;
@@ -34,26 +34,26 @@ void CarrierAiding::configure(const CarrierSettings& settings) {
   filter_.configure(settings.filter);
 }
 
-bool CarrierAiding::process(const PairEpoch& pair, trunk::Trunk& trunk) {
+bool CarrierAiding::process(const PairEpoch& pair, filter::RelativeNavigationFilter& filter) {
   const GpsTime tag = pair.ours.receiver_time;
   last_update_ = CarrierUpdate{};
-  if (!trunk.own_orbit().started() || tag != trunk.epoch() || pair.theirs.receiver_time != tag) {
+  if (!filter.absolute_orbit().started() || tag != filter.epoch() || pair.theirs.receiver_time != tag) {
     ++counters_.not_admitted;
     return false;
   }
   if (!aid_.is_on()) aid_.go_to(AidState::kWaiting, tag);
-  if (trunk.is_confirmed_by_others(kSource)) share_orbit();
-  watch(tag, trunk);
+  if (filter.is_confirmed_by_others(kSource)) share_orbit();
+  watch(tag, filter);
   const auto their_point = navigation::single_point(pair.theirs, pair.ephemerides, pair.frame);
   if (!their_point.ok() || !pair.R_eci_servicer || !pair.R_eci_target) {
     ++counters_.no_solution;
     return false;
   }
-  if (!admit(pair, their_point.value(), trunk)) {
+  if (!admit(pair, their_point.value(), filter)) {
     ++counters_.not_admitted;
     return false;
   }
-  filter_.begin_blocks(trunk);
+  filter_.activate_blocks(filter);
   const AntennaPlatform servicer{.R_eci_body = *pair.R_eci_servicer,
                                  .antenna_body_m = settings_.servicer_antenna_body_m,
                                  .clock_m = pair.servicer_clock_m};
@@ -61,36 +61,36 @@ bool CarrierAiding::process(const PairEpoch& pair, trunk::Trunk& trunk) {
                                .antenna_body_m = settings_.target_antenna_body_m,
                                .clock_m = their_point.value().clock_m};
   navigation::form_differences(pair.ours, pair.theirs, pair.ephemerides, pair.frame, differences_);
-  last_update_ = filter_.take(differences_, servicer, target, trunk);
+  last_update_ = filter_.process_epoch(differences_, servicer, target, filter);
   last_pair_ = tag;
   ++counters_.pairs;
-  counters_.codes_refused += last_update_.codes_refused;
-  counters_.phases_refused += last_update_.phases_refused;
+  counters_.codes_rejected += last_update_.codes_rejected;
+  counters_.phases_rejected += last_update_.phases_rejected;
   counters_.slips += last_update_.slips;
   aid_.consistency().add(last_update_.code_nis + last_update_.phase_nis,
                          last_update_.codes_used + last_update_.phases_used);
-  judge(tag, trunk);
+  judge(tag, filter);
   return true;
 }
 
 /// After an update: whether the codes contradict the orbit; otherwise the integers.
-void CarrierAiding::judge(GpsTime time, trunk::Trunk& trunk) {
-  const bool is_contradicted = last_update_.codes_refused > last_update_.codes_used;
+void CarrierAiding::judge(GpsTime time, filter::RelativeNavigationFilter& filter) {
+  const bool is_contradicted = last_update_.codes_rejected > last_update_.codes_used;
   contradicted_in_a_row_ = is_contradicted ? contradicted_in_a_row_ + 1 : 0;
-  if (contradicted_in_a_row_ >= kMaxContradicted || !trunk.has_relative()) {
-    give_up(time, trunk);
+  if (contradicted_in_a_row_ >= kMaxContradicted || !filter.has_relative()) {
+    give_up(time, filter);
     return;
   }
-  if (last_update_.codes_used > 0) trunk.confirm_relative(kSource);
+  if (last_update_.codes_used > 0) filter.confirm_relative(kSource);
   aid_.go_to(AidState::kAiding, time);
-  judge_integers(trunk);
-  judge_antennas(trunk);
+  judge_integers(filter);
+  judge_antennas(filter);
 }
 
 /// Held integers that the phases contradict are released one by one or together: an inconsistency either way.
-void CarrierAiding::judge_integers(trunk::Trunk& trunk) {
+void CarrierAiding::judge_integers(filter::RelativeNavigationFilter& filter) {
   const std::int32_t releases = ambiguities_.report().releases;
-  ambiguities_.update(filter_, trunk, last_update_, settings_.ambiguities);
+  ambiguities_.update(filter_, filter, last_update_, settings_.ambiguities);
   if (last_update_.contradictions == 0 && ambiguities_.report().releases == releases) return;
   const std::int32_t used = last_update_.phases_used;
   aid_.note_inconsistency(used > 0 ? last_update_.phase_nis / used : 0.0);
@@ -98,24 +98,24 @@ void CarrierAiding::judge_integers(trunk::Trunk& trunk) {
 
 /// A baseline between antennas that are not where they are assumed is fixed and precise, and wrong. Its motion
 /// contradicts the dynamics of the orbit, which the offsets of the antennas then follow.
-void CarrierAiding::judge_antennas(trunk::Trunk& trunk) {
-  const double offset = filter_.largest_antenna_offset(trunk.estimate());
+void CarrierAiding::judge_antennas(filter::RelativeNavigationFilter& filter) {
+  const double offset = filter_.largest_antenna_offset(filter.estimate());
   if (!(offset > kMaxAntennaOffset)) return;
-  ambiguities_.release(filter_, trunk, offset * filter_.antenna_sigma_m());
-  filter_.widen_antennas(trunk, kWiderAntennas);
+  ambiguities_.release(filter_, filter, offset * filter_.antenna_sigma_m());
+  filter_.widen_antennas(filter, kWiderAntennas);
   aid_.note_inconsistency(offset);
 }
 
-void CarrierAiding::suspend(GpsTime now, trunk::Trunk& trunk) {
-  CarrierFilter::rest_epoch_states(trunk);
-  filter_.rest_channels(trunk);
+void CarrierAiding::suspend(GpsTime now, filter::RelativeNavigationFilter& filter) {
+  CarrierFilter::deactivate_epoch_states(filter);
+  filter_.deactivate_channels(filter);
   ambiguities_.reset();
   aid_.go_to(AidState::kSuspended, now);
 }
 
-void CarrierAiding::watch(GpsTime now, trunk::Trunk& trunk) {
+void CarrierAiding::watch(GpsTime now, filter::RelativeNavigationFilter& filter) {
   if (has_changed_) {
-    discard(trunk);
+    discard(filter);
     has_changed_ = false;
     if (aid_.is_on()) aid_.go_to(AidState::kWaiting, now);
   }
@@ -123,29 +123,30 @@ void CarrierAiding::watch(GpsTime now, trunk::Trunk& trunk) {
   if (!last_pair_) return;
   const Duration silent = now - *last_pair_;
   if (aid_.state() == AidState::kAiding && silent > kSilence) {
-    CarrierFilter::rest_epoch_states(trunk);
+    CarrierFilter::deactivate_epoch_states(filter);
     aid_.go_to(AidState::kSuspended, now);
   }
   if (aid_.state() != AidState::kSuspended) return;
   if (silent > kKept) {
-    filter_.rest_channels(trunk);
+    filter_.deactivate_channels(filter);
     ambiguities_.reset();
   }
-  if (silent > kEmpiricalKept) trunk::rest_block<trunk::EmpiricalAcceleration>(trunk.estimate());
+  if (silent > kEmpiricalKept) filter::deactivate_block<filter::EmpiricalAcceleration>(filter.estimate());
 }
 
 /// Whether the pair may update the relative orbit; begins the orbit if there is none.
-bool CarrierAiding::admit(const PairEpoch& pair, const navigation::SinglePoint& their_point, trunk::Trunk& trunk) {
+bool CarrierAiding::admit(const PairEpoch& pair, const navigation::SinglePoint& their_point,
+                          filter::RelativeNavigationFilter& filter) {
   const GpsTime tag = pair.ours.receiver_time;
-  const bool has_blocks = trunk::is_active<ServicerAntenna>(trunk.estimate());
+  const bool has_blocks = filter::is_active<ServicerAntenna>(filter.estimate());
   if ((aid_.state() == AidState::kAiding || aid_.state() == AidState::kSuspended) && !has_blocks) {
-    // The trunk has discarded its estimate.
-    discard(trunk);
+    // The filter has discarded its estimate.
+    discard(filter);
     aid_.go_to(AidState::kWaiting, tag);
   }
-  if (trunk.knowledge() <= trunk::RelativeKnowledge::kApriori || (must_begin_ && owns_orbit_)) {
+  if (filter.solution_status() <= filter::SolutionStatus::kApriori || (must_begin_ && owns_orbit_)) {
     aid_.go_to(AidState::kStarting, tag);
-    return begin_orbit(pair, their_point, trunk);
+    return begin_orbit(pair, their_point, filter);
   }
   switch (aid_.state()) {
     case AidState::kAiding:
@@ -159,21 +160,21 @@ bool CarrierAiding::admit(const PairEpoch& pair, const navigation::SinglePoint& 
       break;
   }
   aid_.go_to(AidState::kStarting, tag);
-  agreeing_in_a_row_ = agrees(pair, their_point, trunk) ? agreeing_in_a_row_ + 1 : 0;
+  agreeing_in_a_row_ = agrees(pair, their_point, filter) ? agreeing_in_a_row_ + 1 : 0;
   return agreeing_in_a_row_ >= kMinAgreeing;
 }
 
 /// Differences of single-point solutions cancel errors of orbits and clocks.
-std::optional<CarrierAiding::CodeBaseline> CarrierAiding::code_baseline(const PairEpoch& pair,
-                                                                        const navigation::SinglePoint& their_point,
-                                                                        const trunk::Trunk& trunk) const {
+std::optional<CarrierAiding::CodeBaseline> CarrierAiding::code_baseline(
+    const PairEpoch& pair, const navigation::SinglePoint& their_point,
+    const filter::RelativeNavigationFilter& filter) const {
   const auto our_point = navigation::single_point(pair.ours, pair.ephemerides, pair.frame);
   if (!our_point.ok()) return std::nullopt;
   const double apart_s = (their_point.clock_m - our_point.value().clock_m) / gnss::kSpeedOfLight;
   CodeBaseline baseline;
   baseline.relative_eci = their_point.position_eci - *pair.R_eci_target * settings_.target_antenna_body_m -
                           our_point.value().position_eci + *pair.R_eci_servicer * settings_.servicer_antenna_body_m +
-                          apart_s * trunk.servicer().velocity_eci;
+                          apart_s * filter.servicer().velocity_eci;
   baseline.noise_m = math::hypot(our_point.value().sigma_m, their_point.sigma_m);
   baseline.sigma_m = math::hypot(settings_.start_sigma_m, baseline.noise_m);
   return baseline;
@@ -182,17 +183,17 @@ std::optional<CarrierAiding::CodeBaseline> CarrierAiding::code_baseline(const Pa
 /// From two baselines: the difference of codes cancels in the velocity what both have in common, and a velocity assumed
 /// from the separation alone would leave elements so uncertain that their curvature exceeds the codes.
 bool CarrierAiding::begin_orbit(const PairEpoch& pair, const navigation::SinglePoint& their_point,
-                                trunk::Trunk& trunk) {
+                                filter::RelativeNavigationFilter& filter) {
   const GpsTime tag = pair.ours.receiver_time;
-  const auto baseline = code_baseline(pair, their_point, trunk);
+  const auto baseline = code_baseline(pair, their_point, filter);
   if (!baseline) return false;
-  const bool is_first =
-      !first_baseline_ || tag - first_baseline_->time > kBaselinesApart || has_burn_since(first_baseline_->time, trunk);
+  const bool is_first = !first_baseline_ || tag - first_baseline_->time > kBaselinesApart ||
+                        has_burn_since(first_baseline_->time, filter);
   if (is_first) {
     first_baseline_ = FirstBaseline{tag, *baseline};
     return false;
   }
-  const orbit::CartesianState servicer = trunk.servicer();
+  const orbit::CartesianState servicer = filter.servicer();
   const double dt = seconds(tag - first_baseline_->time);
   const Vector3& relative = baseline->relative_eci;
   // Gravity gradient of a point mass over the interval.
@@ -211,44 +212,44 @@ bool CarrierAiding::begin_orbit(const PairEpoch& pair, const navigation::SingleP
   const double velocity_sigma = 2.0 * noise_m / dt;
   scaled.rightCols<3>() *=
       velocity_sigma < settings_.start_velocity_sigma ? velocity_sigma : settings_.start_velocity_sigma;
-  discard(trunk);
-  trunk.begin_relative(roe.value(), scaled.lazyProduct(scaled.transpose()), trunk::RelativeKnowledge::kEstimated);
+  discard(filter);
+  filter.initialize_relative(roe.value(), scaled.lazyProduct(scaled.transpose()), filter::SolutionStatus::kEstimated);
   if (counters_.starts++ > 0) ++counters_.restarts;
   owns_orbit_ = true;
   must_begin_ = false;
   return true;
 }
 
-/// Whether a code baseline agrees with the relative orbit of the trunk.
+/// Whether a code baseline agrees with the relative orbit of the filter.
 bool CarrierAiding::agrees(const PairEpoch& pair, const navigation::SinglePoint& their_point,
-                           const trunk::Trunk& trunk) const {
-  const auto baseline = code_baseline(pair, their_point, trunk);
-  const auto target = trunk.target();
+                           const filter::RelativeNavigationFilter& filter) const {
+  const auto baseline = code_baseline(pair, their_point, filter);
+  const auto target = filter.target();
   if (!baseline || !target.ok()) return false;
-  const Vector3 apart = baseline->relative_eci - (target.value().position_eci - trunk.servicer().position_eci);
-  const math::Cholesky<3> factor(trunk.position_covariance_eci() + square(baseline->sigma_m) * Matrix3::Identity());
+  const Vector3 apart = baseline->relative_eci - (target.value().position_eci - filter.servicer().position_eci);
+  const math::Cholesky<3> factor(filter.position_covariance_eci() + square(baseline->sigma_m) * Matrix3::Identity());
   return factor.ok() && factor.solve_lower(apart).squaredNorm() <= kBaselineGate;
 }
 
-void CarrierAiding::discard(trunk::Trunk& trunk) {
-  filter_.rest_blocks(trunk);
+void CarrierAiding::discard(filter::RelativeNavigationFilter& filter) {
+  filter_.deactivate_blocks(filter);
   ambiguities_.reset();
   agreeing_in_a_row_ = 0;
   contradicted_in_a_row_ = 0;
   first_baseline_.reset();
 }
 
-void CarrierAiding::stop(GpsTime now, trunk::Trunk& trunk) {
-  if (aid_.is_on()) discard(trunk);
+void CarrierAiding::stop(GpsTime now, filter::RelativeNavigationFilter& filter) {
+  if (aid_.is_on()) discard(filter);
   aid_.go_to(AidState::kOff, now);
 }
 
 /// The own blocks are discarded. An orbit that this source has initialised is initialised again at the next pair; that
 /// of another source stays.
-void CarrierAiding::give_up(GpsTime time, trunk::Trunk& trunk) {
+void CarrierAiding::give_up(GpsTime time, filter::RelativeNavigationFilter& filter) {
   ++counters_.failures;
-  discard(trunk);
-  if (owns_orbit_) trunk.distrust_relative();
+  discard(filter);
+  if (owns_orbit_) filter.mark_inconsistent();
   must_begin_ = owns_orbit_;
   aid_.go_to(AidState::kFailed, time);
 }

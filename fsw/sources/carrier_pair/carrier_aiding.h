@@ -1,10 +1,10 @@
 #pragma once
-// Differences of two receivers' code and phase as an aid of the trunk: when they start, rest and fail.
+// Differences of two receivers' code and phase as an aid of the filter: when they start, pause and fail.
 //
-//   waiting -> starting (code baselines compared with the trunk) -> aiding <-> suspended (silent) | failed
+//   waiting -> starting (code baselines compared with the filter) -> aiding <-> suspended (silent) | failed
 //   (contradicted)
 //
-// The coarse baseline of codes initialises the relative orbit only if the trunk has none but an a-priori one. An orbit
+// The coarse baseline of codes initialises the relative orbit only if the filter has none but an a-priori one. An orbit
 // of other sensors is never re-initialised: phases join it once three consecutive baselines agree with it.
 
 #include <cstdint>
@@ -29,7 +29,7 @@ struct CarrierSettings {
   double start_velocity_sigma = 0.2;  ///< m/s, per axis, at most: two code baselines are usually better
 };
 
-/// Observations of both receivers with one tag, at which the trunk stands.
+/// Observations of both receivers with one tag, at which the filter stands.
 struct PairEpoch {
   const gnss::ObservationEpoch& ours;
   const gnss::ObservationEpoch& theirs;
@@ -43,9 +43,9 @@ struct PairEpoch {
 struct CarrierCounters {
   std::int32_t pairs = 0;         ///< epochs of both receivers processed
   std::int32_t no_solution = 0;   ///< pairs without a single-point solution of the target, or without attitude
-  std::int32_t not_admitted = 0;  ///< pairs while starting or failed, or of another time than the trunk's
-  std::int32_t codes_refused = 0;
-  std::int32_t phases_refused = 0;
+  std::int32_t not_admitted = 0;  ///< pairs while starting or failed, or of another time than the filter's
+  std::int32_t codes_rejected = 0;
+  std::int32_t phases_rejected = 0;
   std::int32_t slips = 0;
   std::int32_t starts = 0;    ///< of the relative orbit, by a code baseline
   std::int32_t restarts = 0;  ///< of them, after the first
@@ -54,23 +54,24 @@ struct CarrierCounters {
 
 class CarrierAiding {
  public:
-  static constexpr trunk::MeasurementSource kSource{.bit = navigation_configuration::kUseCarrierPair,
-                                                    .confirms_orbit = true};
+  static constexpr filter::MeasurementSource kSource{.bit = navigation_configuration::kUseCarrierPair,
+                                                     .confirms_orbit = true};
 
   /// Replaces the settings. If those of the blocks have changed, the blocks are discarded at the next epoch.
   void configure(const CarrierSettings& settings);
 
   /// Processes a pair; false if it was not used.
-  bool process(const PairEpoch& pair, trunk::Trunk& trunk);
+  bool process(const PairEpoch& pair, filter::RelativeNavigationFilter& filter);
 
   /// At each step: suspends after kSilence without a pair, and releases the ambiguities after kKept.
-  void watch(GpsTime now, trunk::Trunk& trunk);
+  void watch(GpsTime now, filter::RelativeNavigationFilter& filter);
 
-  /// Its pairs will not be processed for a time: the states of an epoch and the integers rest, the orbit stays.
-  void suspend(GpsTime now, trunk::Trunk& trunk);
+  /// Suspends the source, whose pairs will not be processed for a time: deactivates the states of an epoch and the
+  /// ambiguities; the orbit stays.
+  void suspend(GpsTime now, filter::RelativeNavigationFilter& filter);
 
   /// Deactivates the own blocks; the orbit stays.
-  void stop(GpsTime now, trunk::Trunk& trunk);
+  void stop(GpsTime now, filter::RelativeNavigationFilter& filter);
 
   /// An epoch of both receivers could not be used because the servicer's had no solution.
   void count_no_solution() { ++counters_.no_solution; }
@@ -116,16 +117,18 @@ class CarrierAiding {
 
   [[nodiscard]] std::optional<CodeBaseline> code_baseline(const PairEpoch& pair,
                                                           const navigation::SinglePoint& their_point,
-                                                          const trunk::Trunk& trunk) const;
-  bool admit(const PairEpoch& pair, const navigation::SinglePoint& their_point, trunk::Trunk& trunk);
-  bool begin_orbit(const PairEpoch& pair, const navigation::SinglePoint& their_point, trunk::Trunk& trunk);
+                                                          const filter::RelativeNavigationFilter& filter) const;
+  bool admit(const PairEpoch& pair, const navigation::SinglePoint& their_point,
+             filter::RelativeNavigationFilter& filter);
+  bool begin_orbit(const PairEpoch& pair, const navigation::SinglePoint& their_point,
+                   filter::RelativeNavigationFilter& filter);
   [[nodiscard]] bool agrees(const PairEpoch& pair, const navigation::SinglePoint& their_point,
-                            const trunk::Trunk& trunk) const;
-  void discard(trunk::Trunk& trunk);
-  void give_up(GpsTime time, trunk::Trunk& trunk);
-  void judge(GpsTime time, trunk::Trunk& trunk);
-  void judge_integers(trunk::Trunk& trunk);
-  void judge_antennas(trunk::Trunk& trunk);
+                            const filter::RelativeNavigationFilter& filter) const;
+  void discard(filter::RelativeNavigationFilter& filter);
+  void give_up(GpsTime time, filter::RelativeNavigationFilter& filter);
+  void judge(GpsTime time, filter::RelativeNavigationFilter& filter);
+  void judge_integers(filter::RelativeNavigationFilter& filter);
+  void judge_antennas(filter::RelativeNavigationFilter& filter);
 
   CarrierSettings settings_;
   bool has_changed_ = false;
@@ -138,7 +141,7 @@ class CarrierAiding {
   bool owns_orbit_ = false;
   bool must_begin_ = false;  ///< the own orbit was given up
   int agreeing_in_a_row_ = 0;
-  int contradicted_in_a_row_ = 0;  ///< epochs whose codes were mostly refused
+  int contradicted_in_a_row_ = 0;  ///< epochs whose codes were mostly rejected
   CarrierCounters counters_;
   CarrierUpdate last_update_;
 };

@@ -6,9 +6,9 @@
 namespace vbar::fsw::sources {
 namespace {
 
+using filter::kAt;
 using navigation::DifferentialEpoch;
 using navigation::DifferentialObservation;
-using trunk::kAt;
 
 constexpr double kGate = 25.0;  // 5 sigma, one degree of freedom
 constexpr double kNoGate = estimation::kNoGate;
@@ -65,83 +65,83 @@ void CarrierFilter::configure(const CarrierFilterSettings& settings) {
   settings_ = settings;
 }
 
-void CarrierFilter::begin_blocks(trunk::Trunk& trunk) const {
-  trunk::Estimate& estimate = trunk.estimate();
+void CarrierFilter::activate_blocks(filter::RelativeNavigationFilter& filter) const {
+  filter::Estimate& estimate = filter.estimate();
   const estimation::GaussMarkov offset{.sigma = antenna_sigma_m_};
-  if (!trunk::is_active<ServicerAntenna>(estimate)) trunk::begin_block<ServicerAntenna>(estimate, offset);
-  if (!trunk::is_active<TargetAntenna>(estimate)) trunk::begin_block<TargetAntenna>(estimate, offset);
-  if (!trunk::is_active<CodeBiases>(estimate)) {
-    trunk::begin_block<CodeBiases>(estimate, {.sigma = settings_.code_bias_sigma_m});
+  if (!filter::is_active<ServicerAntenna>(estimate)) filter::initialize_block<ServicerAntenna>(estimate, offset);
+  if (!filter::is_active<TargetAntenna>(estimate)) filter::initialize_block<TargetAntenna>(estimate, offset);
+  if (!filter::is_active<CodeBiases>(estimate)) {
+    filter::initialize_block<CodeBiases>(estimate, {.sigma = settings_.code_bias_sigma_m});
   }
-  trunk.relative_orbit().begin_empirical(estimate);
+  filter.relative_orbit().activate_empirical(estimate);
 }
 
-void CarrierFilter::rest_blocks(trunk::Trunk& trunk) {
-  rest_channels(trunk);
-  rest_epoch_states(trunk);
-  trunk::Estimate& estimate = trunk.estimate();
-  trunk::rest_block<Ionosphere>(estimate);
-  trunk::rest_block<CodeBiases>(estimate);
-  trunk::rest_block<TargetAntenna>(estimate);
-  trunk::rest_block<ServicerAntenna>(estimate);
-  trunk::rest_block<trunk::EmpiricalAcceleration>(estimate);
+void CarrierFilter::deactivate_blocks(filter::RelativeNavigationFilter& filter) {
+  deactivate_channels(filter);
+  deactivate_epoch_states(filter);
+  filter::Estimate& estimate = filter.estimate();
+  filter::deactivate_block<Ionosphere>(estimate);
+  filter::deactivate_block<CodeBiases>(estimate);
+  filter::deactivate_block<TargetAntenna>(estimate);
+  filter::deactivate_block<ServicerAntenna>(estimate);
+  filter::deactivate_block<filter::EmpiricalAcceleration>(estimate);
 }
 
-void CarrierFilter::rest_epoch_states(trunk::Trunk& trunk) {
-  trunk::rest_block<ClockDifference>(trunk.estimate());
-  trunk::rest_block<PhaseCentreJitter>(trunk.estimate());
+void CarrierFilter::deactivate_epoch_states(filter::RelativeNavigationFilter& filter) {
+  filter::deactivate_block<ClockDifference>(filter.estimate());
+  filter::deactivate_block<PhaseCentreJitter>(filter.estimate());
 }
 
-void CarrierFilter::rest_channels(trunk::Trunk& trunk) {
+void CarrierFilter::deactivate_channels(filter::RelativeNavigationFilter& filter) {
   channels_.clear();
-  trunk::rest_block<PhaseWander>(trunk.estimate());
-  trunk::rest_block<Ambiguities>(trunk.estimate());
+  filter::deactivate_block<PhaseWander>(filter.estimate());
+  filter::deactivate_block<Ambiguities>(filter.estimate());
 }
 
-CarrierUpdate CarrierFilter::take(const DifferentialEpoch& epoch, const AntennaPlatform& servicer,
-                                  const AntennaPlatform& target, trunk::Trunk& trunk) {
+CarrierUpdate CarrierFilter::process_epoch(const DifferentialEpoch& epoch, const AntennaPlatform& servicer,
+                                           const AntennaPlatform& target, filter::RelativeNavigationFilter& filter) {
   CarrierUpdate update;
-  if (!trunk.has_relative() || epoch.count == 0) return update;
-  trunk::Estimate& estimate = trunk.estimate();
+  if (!filter.has_relative() || epoch.count == 0) return update;
+  filter::Estimate& estimate = filter.estimate();
   channels_.give_back_unseen(epoch.time, [&estimate](std::size_t place) { deactivate(place, estimate); });
   renew_epoch_states(servicer, target, estimate);
   edits_.fill(Edit{});
-  if (rows_.form(epoch, servicer, target, trunk) != Status::kOk) return update;
-  follow_ionosphere(trunk);
+  if (rows_.form(epoch, servicer, target, filter) != Status::kOk) return update;
+  follow_ionosphere(filter);
   find_outlying_codes(epoch, estimate);
   use_codes(epoch, estimate, update);
   if (rows_.nonlinearity_m() < kMaxNonlinearity_m || channels_.is_any_tracked()) {
     follow_channels(epoch, estimate, update);
     find_slips_by_median(epoch, estimate, update);
-    use_phases(epoch, trunk, update);
+    use_phases(epoch, filter, update);
   }
-  trunk.finish_update();
+  filter.finish_update();
   return update;
 }
 
 /// The delays of two receivers differ by the curvature of the ionosphere over their baseline: by millimetres at low
 /// elevations a kilometre apart, as if the baseline were shorter.
-void CarrierFilter::follow_ionosphere(trunk::Trunk& trunk) const {
-  const bool is_active = trunk::is_active<Ionosphere>(trunk.estimate());
+void CarrierFilter::follow_ionosphere(filter::RelativeNavigationFilter& filter) const {
+  const bool is_active = filter::is_active<Ionosphere>(filter.estimate());
   if (!is_active && rows_.baseline_m() > kIonosphereFrom_m) {
-    trunk::begin_block<Ionosphere>(trunk.estimate(), trunk.settings().processes.of<Ionosphere>());
+    filter::initialize_block<Ionosphere>(filter.estimate(), filter.settings().processes.of<Ionosphere>());
   } else if (is_active && rows_.baseline_m() < kIonosphereUntil_m) {
-    trunk::rest_block<Ionosphere>(trunk.estimate());
+    filter::deactivate_block<Ionosphere>(filter.estimate());
   }
 }
 
 /// Clocks and jitter are independent of the previous epoch.
 void CarrierFilter::renew_epoch_states(const AntennaPlatform& servicer, const AntennaPlatform& target,
-                                       trunk::Estimate& estimate) {
+                                       filter::Estimate& estimate) {
   estimate.reset(kAt<ClockDifference>, target.clock_m - servicer.clock_m, square(kClockSigma_m));
   const double jitter_variance = 2.0 * square(settings_.phase_centre_jitter_m);
   for (int axis = 0; axis < 3; ++axis) estimate.reset(kAt<PhaseCentreJitter> + axis, 0.0, jitter_variance);
 }
 
 /// The clock is unknown until the first code, which determines it whatever the error of that code (multipath of a
-/// satellite that has just risen). Codes that contradict the median are therefore processed last: the gate then refuses
+/// satellite that has just risen). Codes that contradict the median are therefore processed last: the gate then rejects
 /// them, and not the others and all phases.
-void CarrierFilter::find_outlying_codes(const DifferentialEpoch& epoch, const trunk::Estimate& estimate) {
+void CarrierFilter::find_outlying_codes(const DifferentialEpoch& epoch, const filter::Estimate& estimate) {
   Residuals residuals;
   for (std::size_t n = 0; n < epoch.count; ++n) {
     residuals.add({n, rows_.code_residual(n, epoch.observations[n], estimate)});
@@ -152,7 +152,7 @@ void CarrierFilter::find_outlying_codes(const DifferentialEpoch& epoch, const tr
   for (std::size_t n = 0; n < epoch.count; ++n) {
     if (n == middle) continue;
     const DifferentialObservation& observation = epoch.observations[n];
-    const trunk::Estimate::Vector h =
+    const filter::Estimate::Vector h =
         rows_.code_sensitivity(n, observation.signal) - rows_.code_sensitivity(middle, median.signal);
     const double apart_m = rows_.code_residual(n, observation, estimate) - residuals.median().value;
     // The variance of a median is about that of a mean.
@@ -162,7 +162,7 @@ void CarrierFilter::find_outlying_codes(const DifferentialEpoch& epoch, const tr
   }
 }
 
-void CarrierFilter::use_codes(const DifferentialEpoch& epoch, trunk::Estimate& estimate, CarrierUpdate& update) {
+void CarrierFilter::use_codes(const DifferentialEpoch& epoch, filter::Estimate& estimate, CarrierUpdate& update) {
   for (const bool outlying : {false, true}) {
     for (std::size_t n = 0; n < epoch.count; ++n) {
       if (edits_[n].has_outlying_code != outlying) continue;
@@ -175,14 +175,14 @@ void CarrierFilter::use_codes(const DifferentialEpoch& epoch, trunk::Estimate& e
         ++update.codes_used;
         update.code_nis += innovation.nis();
       } else {
-        ++update.codes_refused;
+        ++update.codes_rejected;
       }
     }
   }
 }
 
 /// Assigns a channel to each usable phase, and finds the slips reported by the receivers.
-void CarrierFilter::follow_channels(const DifferentialEpoch& epoch, trunk::Estimate& estimate, CarrierUpdate& update) {
+void CarrierFilter::follow_channels(const DifferentialEpoch& epoch, filter::Estimate& estimate, CarrierUpdate& update) {
   for (std::size_t n = 0; n < epoch.count; ++n) {
     const DifferentialObservation& observation = epoch.observations[n];
     if (!observation.phase_usable) continue;
@@ -199,7 +199,7 @@ void CarrierFilter::follow_channels(const DifferentialEpoch& epoch, trunk::Estim
 
 /// The clock shifts all phases alike, and the code determines it to decimetres only. Each phase is therefore compared
 /// with the median: clock and common offset cancel.
-void CarrierFilter::find_slips_by_median(const DifferentialEpoch& epoch, trunk::Estimate& estimate,
+void CarrierFilter::find_slips_by_median(const DifferentialEpoch& epoch, filter::Estimate& estimate,
                                          CarrierUpdate& update) {
   Residuals residuals;
   for (std::size_t n = 0; n < epoch.count; ++n) {
@@ -213,7 +213,7 @@ void CarrierFilter::find_slips_by_median(const DifferentialEpoch& epoch, trunk::
     const std::size_t n = residuals.sorted[k].observation;
     if (n == middle) continue;
     const std::size_t place = *edits_[n].channel;
-    const trunk::Estimate::Vector h =
+    const filter::Estimate::Vector h =
         rows_.phase_sensitivity(n, place, epoch.observations[n].signal) -
         rows_.phase_sensitivity(middle, *edits_[middle].channel, epoch.observations[middle].signal);
     const double variance =
@@ -227,8 +227,9 @@ void CarrierFilter::find_slips_by_median(const DifferentialEpoch& epoch, trunk::
   }
 }
 
-void CarrierFilter::use_phases(const DifferentialEpoch& epoch, trunk::Trunk& trunk, CarrierUpdate& update) {
-  trunk::Estimate& estimate = trunk.estimate();
+void CarrierFilter::use_phases(const DifferentialEpoch& epoch, filter::RelativeNavigationFilter& filter,
+                               CarrierUpdate& update) {
+  filter::Estimate& estimate = filter.estimate();
   // Known ambiguities first: they determine the clock with which new ones are initialised.
   for (const bool known : {true, false}) {
     for (std::size_t n = 0; n < epoch.count; ++n) {
@@ -239,14 +240,14 @@ void CarrierFilter::use_phases(const DifferentialEpoch& epoch, trunk::Trunk& tru
         // The wander starts with its stationary variance: a restarted channel may have assigned a slip to it.
         estimate.reset(ambiguity_index(*place), rows_.residual(n, observation.phase_m, estimate),
                        square(kAmbiguitySigma_m));
-        estimation::begin_process(estimate, wander_index(*place), trunk.settings().processes.of<PhaseWander>());
+        estimation::initialize_process(estimate, wander_index(*place), filter.settings().processes.of<PhaseWander>());
       }
       const double variance = square(observation.phase_sigma_m) + rows_.extra_variance(n);
       const estimation::Innovation innovation =
           estimate.update(rows_.phase_sensitivity(n, *place, observation.signal),
                           rows_.phase_residual(n, *place, observation, estimate), variance, known ? kGate : kNoGate);
       if (!innovation.accepted) {
-        ++update.phases_refused;
+        ++update.phases_rejected;
         contradict(*place, estimate, update);
         continue;
       }
@@ -260,26 +261,27 @@ void CarrierFilter::use_phases(const DifferentialEpoch& epoch, trunk::Trunk& tru
   }
 }
 
-void CarrierFilter::deactivate(std::size_t place, trunk::Estimate& estimate) {
+void CarrierFilter::deactivate(std::size_t place, filter::Estimate& estimate) {
   estimate.reset(ambiguity_index(place), 0.0, 0.0);
   estimate.reset(wander_index(place), 0.0, 0.0);
 }
 
-void CarrierFilter::lose(std::size_t place, trunk::Estimate& estimate) {
+void CarrierFilter::lose(std::size_t place, filter::Estimate& estimate) {
   channels_.restart(place);
   deactivate(place, estimate);
 }
 
-void CarrierFilter::contradict(std::size_t place, trunk::Estimate& estimate, CarrierUpdate& update) {
+void CarrierFilter::contradict(std::size_t place, filter::Estimate& estimate, CarrierUpdate& update) {
   if (channels_[place].fixed) ++update.contradictions;
   lose(place, estimate);
 }
 
-void CarrierFilter::hold(trunk::Trunk& trunk, std::size_t place, std::size_t reference, double cycles) {
+void CarrierFilter::hold(filter::RelativeNavigationFilter& filter, std::size_t place, std::size_t reference,
+                         double cycles) {
   // A tenth of a millimetre: far below the phase noise, far above rounding.
   constexpr double kHoldVariance = 1e-8;
-  trunk::Estimate& estimate = trunk.estimate();
-  trunk::Estimate::Vector h = trunk::Estimate::Vector::Zero();
+  filter::Estimate& estimate = filter.estimate();
+  filter::Estimate::Vector h = filter::Estimate::Vector::Zero();
   h(ambiguity_index(place)) = 1.0;
   h(ambiguity_index(reference)) = -1.0;
   const double difference = estimate.mean(ambiguity_index(place)) - estimate.mean(ambiguity_index(reference));
@@ -287,28 +289,28 @@ void CarrierFilter::hold(trunk::Trunk& trunk, std::size_t place, std::size_t ref
   estimate.update(h, wavelength * cycles - difference, kHoldVariance, kNoGate);
   channels_.set_fixed(place, true);
   channels_.set_fixed(reference, true);
-  trunk.finish_update();
+  filter.finish_update();
 }
 
-void CarrierFilter::release(trunk::Trunk& trunk, double position_sigma_m) {
-  trunk::Estimate& estimate = trunk.estimate();
+void CarrierFilter::release(filter::RelativeNavigationFilter& filter, double position_sigma_m) {
+  filter::Estimate& estimate = filter.estimate();
   for (std::size_t place = 0; place < kPhaseChannels; ++place) {
     if (channels_[place].in_use) lose(place, estimate);
   }
-  const auto target = trunk.target();
+  const auto target = filter.target();
   if (!target.ok()) return;
-  const auto jacobian = roe_from_target_jacobian(trunk.servicer(), target.value());
+  const auto jacobian = roe_from_target_jacobian(filter.servicer(), target.value());
   if (!jacobian.ok()) return;
   // The time scale of the orbit converts the displacement into a velocity: 1/n is about 1000 s.
   const double velocity_sigma = 1e-3 * position_sigma_m;
   Matrix6 scaled = jacobian.value();
   scaled.leftCols<3>() *= position_sigma_m;
   scaled.rightCols<3>() *= velocity_sigma;
-  estimate.transform_head<6>(trunk.roe(), Matrix6::Identity(), scaled.lazyProduct(scaled.transpose()));
-  trunk.finish_update();
+  estimate.transform_head<6>(filter.roe(), Matrix6::Identity(), scaled.lazyProduct(scaled.transpose()));
+  filter.finish_update();
 }
 
-double CarrierFilter::largest_antenna_offset(const trunk::Estimate& estimate) const {
+double CarrierFilter::largest_antenna_offset(const filter::Estimate& estimate) const {
   double largest_m = 0.0;
   for (const int block : {kAt<ServicerAntenna>, kAt<TargetAntenna>}) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -319,13 +321,13 @@ double CarrierFilter::largest_antenna_offset(const trunk::Estimate& estimate) co
   return largest_m / antenna_sigma_m_;
 }
 
-void CarrierFilter::widen_antennas(trunk::Trunk& trunk, double factor) {
+void CarrierFilter::widen_antennas(filter::RelativeNavigationFilter& filter, double factor) {
   const double added = (square(factor) - 1.0) * square(antenna_sigma_m_);
   antenna_sigma_m_ *= factor;
   for (const int block : {kAt<ServicerAntenna>, kAt<TargetAntenna>}) {
-    for (int axis = 0; axis < 3; ++axis) trunk.estimate().add_noise(block + axis, added);
+    for (int axis = 0; axis < 3; ++axis) filter.estimate().add_noise(block + axis, added);
   }
-  trunk.finish_update();
+  filter.finish_update();
 }
 
 Result<Matrix6> roe_from_target_jacobian(const orbit::CartesianState& servicer, const orbit::CartesianState& target) {

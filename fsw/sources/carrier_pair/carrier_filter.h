@@ -1,5 +1,5 @@
 #pragma once
-// Update of the trunk's relative estimate by differences of code and carrier phase: codes and outlying ones, channels
+// Update of the filter's relative estimate by differences of code and carrier phase: codes and outlying ones, channels
 // of phases and their cycle slips, ambiguities that are held or released.
 //
 // The clock difference is free at every epoch. The jitter of the phase centres is a state of its own, new at every
@@ -31,9 +31,9 @@ struct CarrierFilterSettings {
 /// Results of one epoch.
 struct CarrierUpdate {
   std::int32_t codes_used = 0;
-  std::int32_t codes_refused = 0;
+  std::int32_t codes_rejected = 0;
   std::int32_t phases_used = 0;
-  std::int32_t phases_refused = 0;
+  std::int32_t phases_rejected = 0;
   std::int32_t slips = 0;
   std::int32_t contradictions = 0;  ///< held channels released although their receivers reported no loss of lock
   double code_nis = 0.0;            ///< sums over the observations used; each is expected to be near their number
@@ -46,39 +46,39 @@ class CarrierFilter {
   void configure(const CarrierFilterSettings& settings);
 
   /// Activates the antenna offsets, the code biases and the empirical acceleration, those of them that are inactive.
-  void begin_blocks(trunk::Trunk& trunk) const;
+  void activate_blocks(filter::RelativeNavigationFilter& filter) const;
   /// Deactivates all blocks of the receivers and releases all channels; the orbit keeps its covariance.
-  void rest_blocks(trunk::Trunk& trunk);
+  void deactivate_blocks(filter::RelativeNavigationFilter& filter);
   /// Of an epoch: clock difference and jitter.
-  static void rest_epoch_states(trunk::Trunk& trunk);
+  static void deactivate_epoch_states(filter::RelativeNavigationFilter& filter);
   /// Releases all channels, ambiguities and wander; the orbit keeps its covariance.
-  void rest_channels(trunk::Trunk& trunk);
+  void deactivate_channels(filter::RelativeNavigationFilter& filter);
 
-  /// Processes the differences of an epoch; the trunk stands at its tag and has a relative orbit.
-  CarrierUpdate take(const navigation::DifferentialEpoch& epoch, const AntennaPlatform& servicer,
-                     const AntennaPlatform& target, trunk::Trunk& trunk);
+  /// Processes the differences of an epoch; the filter stands at its tag and has a relative orbit.
+  CarrierUpdate process_epoch(const navigation::DifferentialEpoch& epoch, const AntennaPlatform& servicer,
+                              const AntennaPlatform& target, filter::RelativeNavigationFilter& filter);
 
   /// The single differences of two channels of one signal differ by an integer number of cycles, held from now on.
-  void hold(trunk::Trunk& trunk, std::size_t place, std::size_t reference, double cycles);
+  void hold(filter::RelativeNavigationFilter& filter, std::size_t place, std::size_t reference, double cycles);
   /// Releases all integers; the orbit's covariance is inflated by `position_sigma_m` and the corresponding velocity:
   /// wrong integers may have shifted it by as much.
-  void release(trunk::Trunk& trunk, double position_sigma_m);
+  void release(filter::RelativeNavigationFilter& filter, double position_sigma_m);
 
   /// The largest component of both antennas' estimated offsets, over its assumed 1 sigma: beyond what a normal
   /// distribution allows, the nominal position of an antenna is wrong.
-  [[nodiscard]] double largest_antenna_offset(const trunk::Estimate& estimate) const;
+  [[nodiscard]] double largest_antenna_offset(const filter::Estimate& estimate) const;
   /// 1 sigma of the offsets, per axis, m, as assumed at present.
   [[nodiscard]] double antenna_sigma_m() const { return antenna_sigma_m_; }
   /// The offsets may be larger by `factor` than assumed so far.
-  void widen_antennas(trunk::Trunk& trunk, double factor);
+  void widen_antennas(filter::RelativeNavigationFilter& filter, double factor);
 
   [[nodiscard]] const PhaseChannels& channels() const { return channels_; }
   /// Index in the estimate of a channel's ambiguity, and of its wander.
   [[nodiscard]] static constexpr int ambiguity_index(std::size_t place) {
-    return trunk::kAt<Ambiguities> + static_cast<int>(place);
+    return filter::kAt<Ambiguities> + static_cast<int>(place);
   }
   [[nodiscard]] static constexpr int wander_index(std::size_t place) {
-    return trunk::kAt<PhaseWander> + static_cast<int>(place);
+    return filter::kAt<PhaseWander> + static_cast<int>(place);
   }
 
  private:
@@ -87,17 +87,18 @@ class CarrierFilter {
     std::optional<std::size_t> channel;
   };
 
-  void renew_epoch_states(const AntennaPlatform& servicer, const AntennaPlatform& target, trunk::Estimate& estimate);
-  void follow_ionosphere(trunk::Trunk& trunk) const;
-  void find_outlying_codes(const navigation::DifferentialEpoch& epoch, const trunk::Estimate& estimate);
-  void use_codes(const navigation::DifferentialEpoch& epoch, trunk::Estimate& estimate, CarrierUpdate& update);
-  void follow_channels(const navigation::DifferentialEpoch& epoch, trunk::Estimate& estimate, CarrierUpdate& update);
-  void find_slips_by_median(const navigation::DifferentialEpoch& epoch, trunk::Estimate& estimate,
+  void renew_epoch_states(const AntennaPlatform& servicer, const AntennaPlatform& target, filter::Estimate& estimate);
+  void follow_ionosphere(filter::RelativeNavigationFilter& filter) const;
+  void find_outlying_codes(const navigation::DifferentialEpoch& epoch, const filter::Estimate& estimate);
+  void use_codes(const navigation::DifferentialEpoch& epoch, filter::Estimate& estimate, CarrierUpdate& update);
+  void follow_channels(const navigation::DifferentialEpoch& epoch, filter::Estimate& estimate, CarrierUpdate& update);
+  void find_slips_by_median(const navigation::DifferentialEpoch& epoch, filter::Estimate& estimate,
                             CarrierUpdate& update);
-  void use_phases(const navigation::DifferentialEpoch& epoch, trunk::Trunk& trunk, CarrierUpdate& update);
-  static void deactivate(std::size_t place, trunk::Estimate& estimate);
-  void lose(std::size_t place, trunk::Estimate& estimate);
-  void contradict(std::size_t place, trunk::Estimate& estimate, CarrierUpdate& update);
+  void use_phases(const navigation::DifferentialEpoch& epoch, filter::RelativeNavigationFilter& filter,
+                  CarrierUpdate& update);
+  static void deactivate(std::size_t place, filter::Estimate& estimate);
+  void lose(std::size_t place, filter::Estimate& estimate);
+  void contradict(std::size_t place, filter::Estimate& estimate, CarrierUpdate& update);
 
   CarrierFilterSettings settings_;
   double antenna_sigma_m_ = CarrierFilterSettings{}.antenna_offset_sigma_m;

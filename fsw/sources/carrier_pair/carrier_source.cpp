@@ -33,7 +33,7 @@ void CarrierSource::collect(Context& context, RecordFiler records) {
       if (filed != Status::kOk && filed != Status::kBadSequence) return;
     } else if (context.now - tag < pair_wait_) {
       // A silent target is not waited for: the images of a camera would be replaced by newer ones meanwhile. An epoch
-      // that arrives all the same is used if the trunk has not passed it.
+      // that arrives all the same is used if the filter has not passed it.
       if (alone_in_a_row_ >= kSilentAfter) break;
       if (!owed_) owed_ = tag;
     } else {
@@ -44,13 +44,13 @@ void CarrierSource::collect(Context& context, RecordFiler records) {
   }
 }
 
-void CarrierSource::process_record(const Record& record, Context& context, trunk::Trunk& trunk) {
+void CarrierSource::process_record(const Record& record, Context& context, filter::RelativeNavigationFilter& filter) {
   const gnss::ObservationEpoch* ours = context.gnss.waiting(Receiver::kServicer).find(record.time);
   const gnss::ObservationEpoch* theirs = context.gnss.waiting(Receiver::kTarget).find(record.time);
   if (ours == nullptr || theirs == nullptr) return;
   const auto servicer_clock_m = context.gnss.servicer_clock_m(record.time);
   if (!servicer_clock_m) return aiding_.count_no_solution();
-  const auto frame = navigation::EarthFrame::at(record.time, trunk.settings().earth);
+  const auto frame = navigation::EarthFrame::at(record.time, filter.settings().earth);
   const PairEpoch pair{.ours = *ours,
                        .theirs = *theirs,
                        .servicer_clock_m = *servicer_clock_m,
@@ -58,11 +58,11 @@ void CarrierSource::process_record(const Record& record, Context& context, trunk
                        .R_eci_target = context.platform.target_attitude.R_eci_body_at(record.time),
                        .ephemerides = context.gnss.ephemerides(),
                        .frame = frame};
-  aiding_.process(pair, trunk);
+  aiding_.process(pair, filter);
 }
 
-void CarrierSource::stop(GpsTime now, trunk::Trunk& trunk) {
-  aiding_.stop(now, trunk);
+void CarrierSource::stop(GpsTime now, filter::RelativeNavigationFilter& filter) {
+  aiding_.stop(now, filter);
   owed_.reset();
 }
 
@@ -72,13 +72,13 @@ void CarrierSource::report(const Telemetry& telemetry) const {
   const CarrierUpdate& last = aiding_.last_update();
   telemetry_gnss message{};
   message.step = telemetry.step;
-  message.epoch_gps_ns = telemetry.trunk.epoch().ns;
+  message.epoch_gps_ns = telemetry.filter.epoch().ns;
   message.pairs = counters.pairs;
   message.alone = alone_;
   message.too_late = telemetry.gnss.too_late();
   message.no_solution = counters.no_solution;
-  message.codes_refused = counters.codes_refused;
-  message.phases_refused = counters.phases_refused;
+  message.codes_refused = counters.codes_rejected;
+  message.phases_refused = counters.phases_rejected;
   message.slips = counters.slips;
   message.restarts = counters.restarts;
   message.tracked = ambiguities.tracked;
@@ -92,8 +92,8 @@ void CarrierSource::report(const Telemetry& telemetry) const {
   message.phases_used = last.phases_used;
   message.code_nis = last.code_nis;
   message.phase_nis = last.phase_nis;
-  if (telemetry.trunk.has_relative()) {
-    gnc::copy_lower_triangle(trunk::covariance_rtn(telemetry.trunk.estimate(), telemetry.trunk.servicer()),
+  if (telemetry.filter.has_relative()) {
+    gnc::copy_lower_triangle(filter::covariance_rtn(telemetry.filter.estimate(), telemetry.filter.servicer()),
                              message.covariance_rtn);
   }
   message.messages = telemetry.gnss.messages();

@@ -15,12 +15,12 @@ class CarrierSource {
   bool configure(const Configuration& configuration);
   /// Files the epochs of both receivers with one tag, in order.
   void collect(Context& context, RecordFiler records);
-  void process_record(const Record& record, Context& context, trunk::Trunk& trunk);
+  void process_record(const Record& record, Context& context, filter::RelativeNavigationFilter& filter);
   /// The oldest epoch of the servicer whose counterpart may still arrive.
-  [[nodiscard]] std::optional<GpsTime> owes(GpsTime /*now*/) const { return owed_; }
-  void watch(GpsTime now, trunk::Trunk& trunk) { aiding_.watch(now, trunk); }
-  void suspend(GpsTime now, trunk::Trunk& trunk) { aiding_.suspend(now, trunk); }
-  void stop(GpsTime now, trunk::Trunk& trunk);
+  [[nodiscard]] std::optional<GpsTime> pending_since(GpsTime /*now*/) const { return owed_; }
+  void watch(GpsTime now, filter::RelativeNavigationFilter& filter) { aiding_.watch(now, filter); }
+  void suspend(GpsTime now, filter::RelativeNavigationFilter& filter) { aiding_.suspend(now, filter); }
+  void stop(GpsTime now, filter::RelativeNavigationFilter& filter);
   [[nodiscard]] Aid& aid() { return aiding_.aid(); }
   [[nodiscard]] const Aid& aid() const { return aiding_.aid(); }
 
@@ -43,7 +43,7 @@ class CarrierSource {
   GpsTime decided_until_{-1};                     ///< tags up to this are filed, or were alone
   std::optional<GpsTime> owed_;
   std::int32_t alone_ = 0;
-  int alone_in_a_row_ = 0;  ///< from kSilentAfter on the target is silent: nothing is owed until it is heard again
+  int alone_in_a_row_ = 0;  ///< from kSilentAfter on the target is silent: nothing is pending until it is heard again
 };
 
 }  // namespace vbar::fsw::sources

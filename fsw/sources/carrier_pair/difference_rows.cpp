@@ -10,7 +10,7 @@
 namespace vbar::fsw::sources {
 namespace {
 
-using trunk::kAt;
+using filter::kAt;
 
 // 7 m: rounding of 1e-9 m and the third derivative both contribute less than 1e-9 of the Jacobian.
 constexpr double kDifferenceStep = 1e-6;
@@ -99,21 +99,21 @@ Result<ReceptionMap> reception_map(const orbit::CartesianState& servicer, const 
 }
 
 Status DifferenceRows::form(const navigation::DifferentialEpoch& epoch, const AntennaPlatform& servicer,
-                            const AntennaPlatform& target, const trunk::Trunk& trunk) {
-  const trunk::Estimate& estimate = trunk.estimate();
-  const auto map = reception_map(trunk.servicer(), trunk.roe(), trunk.roe_covariance(), target.clock_m);
+                            const AntennaPlatform& target, const filter::RelativeNavigationFilter& filter) {
+  const filter::Estimate& estimate = filter.estimate();
+  const auto map = reception_map(filter.servicer(), filter.roe(), filter.roe_covariance(), target.clock_m);
   if (!map.ok()) return map.status();
   nonlinearity_m_ = math::sqrt(map.value().nonlinearity.trace());
-  reference_.roe = trunk.roe();
+  reference_.roe = filter.roe();
   reference_.servicer_antenna = estimate.mean().segment<3>(kAt<ServicerAntenna>);
   reference_.target_antenna = estimate.mean().segment<3>(kAt<TargetAntenna>);
   reference_.jitter = estimate.mean().segment<3>(kAt<PhaseCentreJitter>);
   reference_.clock = estimate.mean(kAt<ClockDifference>);
-  const Vector3 servicer_antenna = position_at_reception(trunk.servicer(), servicer.clock_m) +
+  const Vector3 servicer_antenna = position_at_reception(filter.servicer(), servicer.clock_m) +
                                    servicer.R_eci_body * (servicer.antenna_body_m + reference_.servicer_antenna);
   const Vector3 target_antenna = map.value().position_eci + reference_.jitter +
                                  target.R_eci_body * (target.antenna_body_m + reference_.target_antenna);
-  const Matrix3 R_rtn_eci = orbit::R_rtn_eci(trunk.servicer());
+  const Matrix3 R_rtn_eci = orbit::R_rtn_eci(filter.servicer());
   baseline_m_ = (target_antenna - servicer_antenna).norm();
   for (std::size_t n = 0; n < epoch.count; ++n) {
     const navigation::DifferentialObservation& observation = epoch.observations[n];
@@ -139,9 +139,9 @@ Status DifferenceRows::form(const navigation::DifferentialEpoch& epoch, const An
   return Status::kOk;
 }
 
-double DifferenceRows::residual(std::size_t n, double measured_m, const trunk::Estimate& estimate) const {
+double DifferenceRows::residual(std::size_t n, double measured_m, const filter::Estimate& estimate) const {
   const Row& row = rows_[n];
-  const trunk::Estimate::Vector& x = estimate.mean();
+  const filter::Estimate::Vector& x = estimate.mean();
   return measured_m - row.predicted - row.roe.dot(x.head<6>() - reference_.roe) -
          row.servicer_antenna.dot(x.segment<3>(kAt<ServicerAntenna>) - reference_.servicer_antenna) -
          row.target_antenna.dot(x.segment<3>(kAt<TargetAntenna>) - reference_.target_antenna) -
@@ -150,7 +150,7 @@ double DifferenceRows::residual(std::size_t n, double measured_m, const trunk::E
 }
 
 double DifferenceRows::code_residual(std::size_t n, const navigation::DifferentialObservation& observation,
-                                     const trunk::Estimate& estimate) const {
+                                     const filter::Estimate& estimate) const {
   const int bias = code_bias_index(observation.signal);
   return residual(n, observation.code_m, estimate) - (bias >= 0 ? estimate.mean(bias) : 0.0) -
          group_delay(n, observation.signal).dot(estimate.mean().segment<3>(kAt<Ionosphere>));
@@ -158,7 +158,7 @@ double DifferenceRows::code_residual(std::size_t n, const navigation::Differenti
 
 double DifferenceRows::phase_residual(std::size_t n, std::size_t channel,
                                       const navigation::DifferentialObservation& observation,
-                                      const trunk::Estimate& estimate) const {
+                                      const filter::Estimate& estimate) const {
   const int place = static_cast<int>(channel);
   return residual(n, observation.phase_m, estimate) - estimate.mean(kAt<Ambiguities> + place) -
          estimate.mean(kAt<PhaseWander> + place) +

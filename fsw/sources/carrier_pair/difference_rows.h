@@ -42,20 +42,20 @@ struct ReceptionMap {
 
 class DifferenceRows {
  public:
-  using Sensitivity = trunk::Estimate::Vector;
+  using Sensitivity = filter::Estimate::Vector;
 
-  /// Forms the model of all observations about the present mean of the estimate; the trunk stands at the tag.
+  /// Forms the model of all observations about the present mean of the estimate; the filter stands at the tag.
   Status form(const navigation::DifferentialEpoch& epoch, const AntennaPlatform& servicer,
-              const AntennaPlatform& target, const trunk::Trunk& trunk);
+              const AntennaPlatform& target, const filter::RelativeNavigationFilter& filter);
 
   /// Measured minus predicted by the estimate, m; of a code with its bias, of a phase with ambiguity and wander of
   /// `channel`, of either without these and without the ionosphere.
   [[nodiscard]] double code_residual(std::size_t n, const navigation::DifferentialObservation& observation,
-                                     const trunk::Estimate& estimate) const;
-  [[nodiscard]] double residual(std::size_t n, double measured_m, const trunk::Estimate& estimate) const;
+                                     const filter::Estimate& estimate) const;
+  [[nodiscard]] double residual(std::size_t n, double measured_m, const filter::Estimate& estimate) const;
   [[nodiscard]] double phase_residual(std::size_t n, std::size_t channel,
                                       const navigation::DifferentialObservation& observation,
-                                      const trunk::Estimate& estimate) const;
+                                      const filter::Estimate& estimate) const;
 
   [[nodiscard]] Sensitivity code_sensitivity(std::size_t n, gnss::Signal signal) const;
   [[nodiscard]] Sensitivity phase_sensitivity(std::size_t n, std::size_t channel, gnss::Signal signal) const;

@@ -30,10 +30,10 @@ void IdealSource::collect(Context& context, RecordFiler records) {
   }
 }
 
-void IdealSource::process_record(const Record& record, Context& context, trunk::Trunk& trunk) {
+void IdealSource::process_record(const Record& record, Context& context, filter::RelativeNavigationFilter& filter) {
   if (filed_ - record.number > waiting_.size()) return context.inbox.count_unusable_time();
   const States& states = waiting_[record.number % waiting_.size()];
-  trunk.set_states(states.servicer, states.target);
+  filter.set_states(states.servicer, states.target);
   last_measurement_ = record.time;
   aid_.go_to(AidState::kAiding, record.time);
 }

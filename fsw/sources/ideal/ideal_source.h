@@ -14,10 +14,10 @@ class IdealSource {
   static constexpr std::int32_t kUse = navigation_configuration::kUseIdeal;
   [[nodiscard]] bool configure(const Configuration& /*configuration*/) { return true; }
   void collect(Context& context, RecordFiler records);
-  void process_record(const Record& record, Context& context, trunk::Trunk& trunk);
-  [[nodiscard]] std::optional<GpsTime> owes(GpsTime /*now*/) const { return std::nullopt; }
-  void watch(GpsTime /*now*/, trunk::Trunk& /*trunk*/) {}
-  void stop(GpsTime now, trunk::Trunk& /*trunk*/) { aid_.go_to(AidState::kOff, now); }
+  void process_record(const Record& record, Context& context, filter::RelativeNavigationFilter& filter);
+  [[nodiscard]] std::optional<GpsTime> pending_since(GpsTime /*now*/) const { return std::nullopt; }
+  void watch(GpsTime /*now*/, filter::RelativeNavigationFilter& /*filter*/) {}
+  void stop(GpsTime now, filter::RelativeNavigationFilter& /*filter*/) { aid_.go_to(AidState::kOff, now); }
   void report(const Telemetry& /*telemetry*/) const {}
   [[nodiscard]] Aid& aid() { return aid_; }
   [[nodiscard]] const Aid& aid() const { return aid_; }

@@ -1,5 +1,5 @@
 #pragma once
-// Keypoints of a camera as an aid of the trunk.
+// Keypoints of a camera as an aid of the filter.
 //
 // The attitude is initialised by a consensus of single-image poses, and only where the target is lit and the range is
 // known: a pose under a wrong range may be wrong by tens of degrees. Until then such poses contribute their position
@@ -21,7 +21,7 @@ struct KeypointAidingSettings {
   KeypointEditingSettings editing;
   NoveltySettings novelty;
   navigation::PoseInitialiserSettings start;
-  navigation::Inertia inertia;  ///< that of the trunk's attitude
+  navigation::Inertia inertia;  ///< that of the filter's attitude
   /// In addition to `start`: poses of fewer keypoints are used there only if their attitude is this accurate, rad.
   int start_inliers = 8;
   double start_attitude_sigma = 0.05;
@@ -57,7 +57,7 @@ struct KeypointImage {
 /// Edit status of the image; numbers of telemetry_pose, edit status.
 enum class KeypointEditStatus : std::uint8_t {
   kNone,      ///< no usable input
-  kRefused,   ///< rejected by the gate
+  kRejected,  ///< rejected by the gate
   kFilter,    ///< keypoints processed
   kPosition,  ///< only its position: the attitude is not confirmed
   kStart,     ///< kept for initialisation
@@ -65,9 +65,9 @@ enum class KeypointEditStatus : std::uint8_t {
 
 struct KeypointCounters {
   std::int32_t images_used = 0;  ///< their keypoints
-  std::int32_t images_refused = 0;
+  std::int32_t images_rejected = 0;
   std::int32_t keypoints_used = 0;
-  std::int32_t keypoints_refused = 0;
+  std::int32_t keypoints_rejected = 0;
   std::int32_t positions_used = 0;   ///< of single images, while the attitude was not confirmed
   std::int32_t attitudes_reset = 0;  ///< initialised from single images, from the second time on
   std::int32_t inflations = 0;       ///< of the covariance of the orbit, after contradictions
@@ -76,7 +76,7 @@ struct KeypointCounters {
 
 /// Keypoints of a lit target against its known attitude.
 struct NetworkVerdict {
-  bool contradicts = false;  ///< most of them are refused, and the pose of the same image has another attitude
+  bool contradicts = false;  ///< most of them are rejected, and the pose of the same image has another attitude
   double angle = 0.0;        ///< rad, between both
 };
 
@@ -85,8 +85,8 @@ class KeypointAiding {
   /// Replaces the settings; the poses collected for initialisation are discarded.
   void configure(const KeypointAidingSettings& settings);
 
-  /// Processes an image; the trunk stands at its time. Must be called for images without a target too.
-  KeypointEditStatus process(const KeypointImage& image, trunk::Trunk& trunk);
+  /// Processes an image; the filter stands at its time. Must be called for images without a target too.
+  KeypointEditStatus process(const KeypointImage& image, filter::RelativeNavigationFilter& filter);
 
   /// Nothing was measured until `now`: the state follows the age of the last accepted image.
   void check_age(GpsTime now);
@@ -109,44 +109,47 @@ class KeypointAiding {
     bool may_start = false;  ///< and for two minutes to come
   };
 
-  [[nodiscard]] Light light_of(const KeypointImage& image, const trunk::Trunk& trunk) const;
+  [[nodiscard]] Light light_of(const KeypointImage& image, const filter::RelativeNavigationFilter& filter) const;
   [[nodiscard]] bool is_fit_for_start(const KeypointImage& image) const;
   [[nodiscard]] navigation::PoseSample sample_of(const KeypointImage& image, const CameraPose& camera,
-                                                 const trunk::Trunk& trunk) const;
-  void follow_burns(const trunk::Trunk& trunk);
-  KeypointEditStatus edit(const KeypointImage& image, trunk::Trunk& trunk);
-  KeypointEditStatus begin_orbit(trunk::Trunk& trunk);
+                                                 const filter::RelativeNavigationFilter& filter) const;
+  void follow_burns(const filter::RelativeNavigationFilter& filter);
+  KeypointEditStatus edit(const KeypointImage& image, filter::RelativeNavigationFilter& filter);
+  KeypointEditStatus begin_orbit(filter::RelativeNavigationFilter& filter);
   [[nodiscard]] bool agrees_with_image(const navigation::AttitudeState& attitude) const;
-  bool begin_attitude(trunk::Trunk& trunk);
-  KeypointEditStatus take_position(const KeypointImage& image, const CameraPose& camera, trunk::Trunk& trunk);
-  void activate_blocks(std::size_t camera, trunk::Trunk& trunk) const;
-  KeypointEditStatus take_keypoints(const KeypointImage& image, const CameraPose& camera, trunk::Trunk& trunk);
+  bool initialize_attitude(filter::RelativeNavigationFilter& filter);
+  KeypointEditStatus take_position(const KeypointImage& image, const CameraPose& camera,
+                                   filter::RelativeNavigationFilter& filter);
+  void activate_blocks(std::size_t camera, filter::RelativeNavigationFilter& filter) const;
+  KeypointEditStatus take_keypoints(const KeypointImage& image, const CameraPose& camera,
+                                    filter::RelativeNavigationFilter& filter);
   [[nodiscard]] Matrix3 position_covariance(const navigation::PoseSample& sample, bool is_agreed) const;
-  [[nodiscard]] bool is_far(const navigation::PoseSample& sample, const trunk::Trunk& trunk) const;
-  void judge_network(const KeypointImage& image, const CameraPose& camera, bool is_refused, const trunk::Trunk& trunk);
+  [[nodiscard]] bool is_far(const navigation::PoseSample& sample, const filter::RelativeNavigationFilter& filter) const;
+  void judge_network(const KeypointImage& image, const CameraPose& camera, bool is_rejected,
+                     const filter::RelativeNavigationFilter& filter);
   [[nodiscard]] bool is_upset(GpsTime time) const;
-  void count_refusal(GpsTime time, bool is_position_far, trunk::Trunk& trunk);
-  void count_missing(trunk::Trunk& trunk);
-  void inflate(double velocity_sigma, double distance, trunk::Trunk& trunk);
-  void contradict_orbit(GpsTime time, trunk::Trunk& trunk);
-  void reset_refusals();
+  void count_rejection(GpsTime time, bool is_position_far, filter::RelativeNavigationFilter& filter);
+  void count_missing(filter::RelativeNavigationFilter& filter);
+  void inflate(double velocity_sigma, double distance, filter::RelativeNavigationFilter& filter);
+  void contradict_orbit(GpsTime time, filter::RelativeNavigationFilter& filter);
+  void reset_rejections();
   void follow_state(GpsTime time, KeypointEditStatus status);
 
   KeypointAidingSettings settings_;
   Aid aid_;
   KeypointEditing editing_;
-  SeenViews seen_;
+  ViewNovelty seen_;
   navigation::PoseInitialiser start_;
   Light light_;                                                            ///< of the current image
   bool has_sample_ = false;                                                ///< of the current image, for initialisation
   Eigen::Quaterniond q_eci_body_sample_ = Eigen::Quaterniond::Identity();  ///< its attitude
   bool has_begun_ = false;                                                 ///< an attitude was initialised before
-  GpsTime burns_until_;  ///< impulses of the trunk before this are known to `start_`
+  GpsTime burns_until_;  ///< impulses of the filter before this are known to `start_`
   GpsTime last_accepted_;
   GpsTime attitude_since_;  ///< the present attitude was initialised
   int images_of_attitude_ = 0;
   std::optional<NetworkVerdict> verdict_;
-  int refused_in_a_row_ = 0;
+  int rejected_in_a_row_ = 0;
   int far_in_a_row_ = 0;
   int missing_in_a_row_ = 0;
   std::size_t inflations_in_a_row_ = 0;

@@ -62,33 +62,35 @@ struct KeypointCommon {
   template <class State>
   static void initialize_with_attitude(estimation::Estimate<State::kSize>& estimate, const Settings& settings) {
     constexpr int kFirst = State::template offset<KeypointCommon>();
-    for (int axis = 0; axis < 2; ++axis) begin_process(estimate, kFirst + axis, {.sigma = settings.shift_sigma_px});
-    begin_process(estimate, kFirst + kStretch, {.sigma = settings.stretch_sigma});
-    for (int k = kLastingStretch; k < kLastingTurn; ++k) begin_process(estimate, kFirst + k, settings.lasting_stretch);
-    for (int k = kLastingTurn; k < kSize; ++k) begin_process(estimate, kFirst + k, settings.lasting_turn);
+    for (int axis = 0; axis < 2; ++axis)
+      initialize_process(estimate, kFirst + axis, {.sigma = settings.shift_sigma_px});
+    initialize_process(estimate, kFirst + kStretch, {.sigma = settings.stretch_sigma});
+    for (int k = kLastingStretch; k < kLastingTurn; ++k)
+      initialize_process(estimate, kFirst + k, settings.lasting_stretch);
+    for (int k = kLastingTurn; k < kSize; ++k) initialize_process(estimate, kFirst + k, settings.lasting_turn);
     constexpr int kErrors = State::template offset<KeypointErrors>();
-    for (int k = 0; k < KeypointErrors::kSize; ++k) begin_process(estimate, kErrors + k, kWhitened);
+    for (int k = 0; k < KeypointErrors::kSize; ++k) initialize_process(estimate, kErrors + k, kWhitened);
   }
 
   template <class State>
   static void propagate(estimation::Estimate<State::kSize>& estimate, const Settings& settings,
                         const estimation::BlockStep& step) {
     constexpr int kFirst = State::template offset<KeypointCommon>();
-    if (estimate.is_idle(kFirst)) return;
+    if (estimate.is_inactive(kFirst)) return;
     const double view =
         math::exp(-step.dt_s * (step.target_rate / settings.correlation_angle + 1.0 / settings.correlation_time_s));
     for (int axis = 0; axis < 2; ++axis) {
-      advance_process(estimate, kFirst + axis, {.sigma = settings.shift_sigma_px}, view);
+      propagate_process(estimate, kFirst + axis, {.sigma = settings.shift_sigma_px}, view);
     }
-    advance_process(estimate, kFirst + kStretch, {.sigma = settings.stretch_sigma}, view);
+    propagate_process(estimate, kFirst + kStretch, {.sigma = settings.stretch_sigma}, view);
     const double lasting = settings.lasting_stretch.decay(step.dt_s);
     for (int k = kLastingStretch; k < kLastingTurn; ++k) {
-      advance_process(estimate, kFirst + k, settings.lasting_stretch, lasting);
+      propagate_process(estimate, kFirst + k, settings.lasting_stretch, lasting);
     }
     const double turn = settings.lasting_turn.decay(step.dt_s);
-    for (int k = kLastingTurn; k < kSize; ++k) advance_process(estimate, kFirst + k, settings.lasting_turn, turn);
+    for (int k = kLastingTurn; k < kSize; ++k) propagate_process(estimate, kFirst + k, settings.lasting_turn, turn);
     constexpr int kErrors = State::template offset<KeypointErrors>();
-    for (int k = 0; k < KeypointErrors::kSize; ++k) advance_process(estimate, kErrors + k, kWhitened, view);
+    for (int k = 0; k < KeypointErrors::kSize; ++k) propagate_process(estimate, kErrors + k, kWhitened, view);
   }
 };
 

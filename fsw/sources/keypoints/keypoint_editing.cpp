@@ -8,7 +8,7 @@
 namespace vbar::fsw::sources {
 namespace {
 
-using trunk::kAt;
+using filter::kAt;
 
 constexpr int kCount = network::kKeypoints;
 
@@ -28,41 +28,41 @@ double max_expected(int k) {
 
 }  // namespace
 
-const KeypointsUpdate& KeypointEditing::take(trunk::Trunk& trunk, GpsTime time, const pose::Keypoints& keypoints,
-                                             const CameraPose& camera, const KeypointModel& model,
-                                             double novelty_scale) {
+const KeypointsUpdate& KeypointEditing::process_measurement(filter::RelativeNavigationFilter& filter, GpsTime time,
+                                                            const pose::Keypoints& keypoints, const CameraPose& camera,
+                                                            const KeypointModel& model, double novelty_scale) {
   update_ = {};
   scaled_ = keypoints;
   // Against an orbit that receivers determine, the innovations are errors of the network, which are tested with its own
   // covariances; a view that was seen before then only loses weight.
-  const double tested_scale = trunk.is_precisely_determined() ? 1.0 : novelty_scale;
+  const double tested_scale = filter.is_precisely_determined() ? 1.0 : novelty_scale;
   for (pose::Keypoint& keypoint : scaled_) keypoint.covariance_px2 *= adapted_scale() * tested_scale;
-  trunk::MeasurementBatch& batch = trunk.workspace();
-  if (keypoint_rows(trunk, scaled_, camera, model, batch) != Status::kOk) return update_;
-  estimation::predict_innovations(trunk.estimate(), batch);
+  filter::MeasurementBatch& batch = filter.workspace();
+  if (keypoint_rows(filter, scaled_, camera, model, batch) != Status::kOk) return update_;
+  estimation::predict_innovations(filter.estimate(), batch);
   gate_keypoints(batch);
   const double nis = estimation::joint_nis(batch);
-  const bool is_refused = update_.used < settings_.min_keypoints ||
-                          update_.is_mostly_rejected(settings_.max_refused_share) || !(nis < estimation::kNoGate);
-  if (is_refused) {
-    trunk.attitude().noise().interrupt();
-    trunk.relative_orbit().noise().interrupt();
+  const bool is_rejected = update_.used < settings_.min_keypoints ||
+                           update_.is_mostly_rejected(settings_.max_rejected_share) || !(nis < estimation::kNoGate);
+  if (is_rejected) {
+    filter.attitude().noise().interrupt();
+    filter.relative_orbit().noise().interrupt();
     return update_;
   }
   update_.nis = nis;
   const int degrees = 2 * update_.used;
   const double misfit = nis > max_expected(degrees) ? std::min(nis / degrees, settings_.max_noise_scale) : 1.0;
   update_.noise_scale = misfit * adapted_scale() * novelty_scale;
-  adapt_noise(batch, time, camera, trunk);
+  adapt_noise(batch, time, camera, filter);
   weight_keypoints(batch, misfit * (novelty_scale / tested_scale));
-  if (!trunk.update(kSource, batch)) return update_;
+  if (!filter.update(kSource, batch)) return update_;
   for (int k = 0; k < kCount; ++k) update_.keypoints[at(k)].postfit = batch.residual.segment<2>(2 * k);
   adapt_scale();
   update_.accepted = true;
   return update_;
 }
 
-void KeypointEditing::gate_keypoints(trunk::MeasurementBatch& batch) {
+void KeypointEditing::gate_keypoints(filter::MeasurementBatch& batch) {
   for (int k = 0; k < kCount; ++k) {
     const int row = 2 * k;
     KeypointUpdate& keypoint = update_.keypoints[at(k)];
@@ -80,7 +80,7 @@ void KeypointEditing::gate_keypoints(trunk::MeasurementBatch& batch) {
 
 /// The covariance of each keypoint is multiplied by `common`, the misfit of the image or more, and by the inverse
 /// weight of its own innovation under the Student distribution, (nu + d^2) / (nu + 2), not below one.
-void KeypointEditing::weight_keypoints(trunk::MeasurementBatch& batch, double common) const {
+void KeypointEditing::weight_keypoints(filter::MeasurementBatch& batch, double common) const {
   for (int k = 0; k < kCount; ++k) {
     const KeypointUpdate& keypoint = update_.keypoints[at(k)];
     if (!keypoint.accepted) continue;
@@ -102,20 +102,20 @@ void KeypointEditing::adapt_scale() {
 
 /// By least squares the innovations are a common shift (a lag of the orbit) and a rotation (a lag of the attitude),
 /// each normalised by its standard deviation. Two axes of the camera are used for the rotation: across and along it.
-void KeypointEditing::adapt_noise(const trunk::MeasurementBatch& batch, GpsTime time, const CameraPose& camera,
-                                  trunk::Trunk& trunk) {
+void KeypointEditing::adapt_noise(const filter::MeasurementBatch& batch, GpsTime time, const CameraPose& camera,
+                                  filter::RelativeNavigationFilter& filter) {
   constexpr int kFitted = 5;
   constexpr int kMinKeypoints = 5;
-  navigation::AdaptiveNoise& acceleration = trunk.relative_orbit().noise();
-  navigation::AdaptiveNoise& angular = trunk.attitude().noise();
-  if (update_.used < kMinKeypoints || time - last_folded_ > kNeighbours) {
+  navigation::AdaptiveNoise& acceleration = filter.relative_orbit().noise();
+  navigation::AdaptiveNoise& angular = filter.attitude().noise();
+  if (update_.used < kMinKeypoints || time - last_processed_ > kNeighbours) {
     acceleration.interrupt();
     angular.interrupt();
   }
-  last_folded_ = time;
+  last_processed_ = time;
   if (update_.used < kMinKeypoints) return;
   const Matrix3 R_body_camera =
-      (camera.R_camera_eci * trunk.attitude().state().q_eci_body.toRotationMatrix()).transpose();
+      (camera.R_camera_eci * filter.attitude().state().q_eci_body.toRotationMatrix()).transpose();
   Eigen::Matrix<double, kMaxMeasurements, kFitted> jacobian = Eigen::Matrix<double, kMaxMeasurements, kFitted>::Zero();
   for (int row = 0; row < batch.count(); ++row) {
     if (!batch.is_used[at(row)]) continue;
@@ -123,7 +123,7 @@ void KeypointEditing::adapt_noise(const trunk::MeasurementBatch& batch, GpsTime 
     // A rotation of 0.01 rad is of the order of a pixel.
     for (int axis = 0; axis < 3; ++axis) {
       jacobian(row, 2 + axis) =
-          0.01 * batch.sensitivity.col(row).segment<3>(kAt<trunk::Turn>).dot(R_body_camera.col(axis));
+          0.01 * batch.sensitivity.col(row).segment<3>(kAt<filter::Turn>).dot(R_body_camera.col(axis));
     }
   }
   Eigen::Matrix<double, kFitted, kFitted> normal;
@@ -138,19 +138,19 @@ void KeypointEditing::adapt_noise(const trunk::MeasurementBatch& batch, GpsTime 
   Eigen::Matrix<double, kFitted, 1> normalised;
   for (int i = 0; i < kFitted; ++i) {
     const Eigen::Matrix<double, kFitted, 1> weights = factor.solve(Eigen::Matrix<double, kFitted, 1>::Unit(i));
-    trunk::MeasurementBatch::Vector combination = trunk::MeasurementBatch::Vector::Zero();
+    filter::MeasurementBatch::Vector combination = filter::MeasurementBatch::Vector::Zero();
     for (int j = 0; j < kFitted; ++j) combination += weights(j) * jacobian.col(j);
     double variance = 0.0;
     for (int c = 0; c < batch.count(); ++c) variance += combination(c) * combination.dot(batch.innovation.col(c));
     if (!(variance > 0.0)) return;
     normalised(i) = fitted(i) / math::sqrt(variance);
   }
-  if (trunk.is_precisely_determined()) {
+  if (filter.is_precisely_determined()) {
     acceleration.interrupt();
   } else {
-    acceleration.take(normalised.head<2>());
+    acceleration.add(normalised.head<2>());
   }
-  angular.take({normalised(2), normalised(4)});
+  angular.add({normalised(2), normalised(4)});
 }
 
 }  // namespace vbar::fsw::sources

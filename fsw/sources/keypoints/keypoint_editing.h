@@ -1,7 +1,7 @@
 #pragma once
-// Update of the trunk by the keypoints of an image: editing, weighting, adaptation of the noise.
+// Update of the filter by the keypoints of an image: editing, weighting, adaptation of the noise.
 //
-// A keypoint beyond its gate is excluded; an image that loses too many is refused. Those that pass are weighted as
+// A keypoint beyond its gate is excluded; an image that loses too many is rejected. Those that pass are weighted as
 // samples of a Student distribution (their tails are heavier than Gaussian: 5 to 7 % lie beyond 99 %), an image that
 // fits badly as a whole is weighted less, and the scale of the network's covariances is adapted to all images so far.
 
@@ -14,10 +14,10 @@
 namespace vbar::fsw::sources {
 
 struct KeypointEditingSettings {
-  double gate = 9.21;              ///< of a keypoint's normalised innovation squared: 99 % of two degrees of freedom
-  double tail_degrees = 4.0;       ///< degrees of freedom of the Student distribution of a keypoint's error
-  double max_noise_scale = 9.0;    ///< largest factor on the covariances of keypoints, adapted and for one image
-  double max_refused_share = 0.6;  ///< of the keypoints; beyond it the image is refused
+  double gate = 9.21;               ///< of a keypoint's normalised innovation squared: 99 % of two degrees of freedom
+  double tail_degrees = 4.0;        ///< degrees of freedom of the Student distribution of a keypoint's error
+  double max_noise_scale = 9.0;     ///< largest factor on the covariances of keypoints, adapted and for one image
+  double max_rejected_share = 0.6;  ///< of the keypoints; beyond it the image is rejected
   int min_keypoints = 3;
 };
 
@@ -44,15 +44,16 @@ struct KeypointsUpdate {
 
 class KeypointEditing {
  public:
-  static constexpr trunk::MeasurementSource kSource{.bit = navigation_configuration::kUseKeypoints};
+  static constexpr filter::MeasurementSource kSource{.bit = navigation_configuration::kUseKeypoints};
 
   void configure(const KeypointEditingSettings& settings) { settings_ = settings; }
   [[nodiscard]] const KeypointEditingSettings& settings() const { return settings_; }
 
-  /// Processes the keypoints of an image; the trunk stands at its time and has an attitude. `novelty_scale`: factor
+  /// Processes the keypoints of an image; the filter stands at its time and has an attitude. `novelty_scale`: factor
   /// on their covariances (seen_views.h).
-  const KeypointsUpdate& take(trunk::Trunk& trunk, GpsTime time, const pose::Keypoints& keypoints,
-                              const CameraPose& camera, const KeypointModel& model, double novelty_scale);
+  const KeypointsUpdate& process_measurement(filter::RelativeNavigationFilter& filter, GpsTime time,
+                                             const pose::Keypoints& keypoints, const CameraPose& camera,
+                                             const KeypointModel& model, double novelty_scale);
 
   [[nodiscard]] const KeypointsUpdate& last_update() const { return update_; }
   void clear_update() { update_ = {}; }
@@ -60,15 +61,16 @@ class KeypointEditing {
   [[nodiscard]] double adapted_scale() const { return adapted_scale_ > 1.0 ? adapted_scale_ : 1.0; }
 
  private:
-  void gate_keypoints(trunk::MeasurementBatch& batch);
-  void weight_keypoints(trunk::MeasurementBatch& batch, double common) const;
-  void adapt_noise(const trunk::MeasurementBatch& batch, GpsTime time, const CameraPose& camera, trunk::Trunk& trunk);
+  void gate_keypoints(filter::MeasurementBatch& batch);
+  void weight_keypoints(filter::MeasurementBatch& batch, double common) const;
+  void adapt_noise(const filter::MeasurementBatch& batch, GpsTime time, const CameraPose& camera,
+                   filter::RelativeNavigationFilter& filter);
   void adapt_scale();
 
   KeypointEditingSettings settings_;
   pose::Keypoints scaled_{};
   double adapted_scale_ = 1.0;
-  GpsTime last_folded_;
+  GpsTime last_processed_;
   KeypointsUpdate update_;
 };
 

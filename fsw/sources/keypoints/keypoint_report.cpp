@@ -44,36 +44,37 @@ void copy_sighting(const pose::PoseSighting& sighting, telemetry_pose& message) 
 
 void copy_counters(const KeypointCounters& counters, telemetry_pose& message) {
   message.images_used = counters.images_used;
-  message.images_refused = counters.images_refused;
+  message.images_refused = counters.images_rejected;
   message.keypoints_used = counters.keypoints_used;
-  message.keypoints_refused = counters.keypoints_refused;
+  message.keypoints_refused = counters.keypoints_rejected;
   message.attitude_restarts = counters.attitudes_reset;
   message.restarts = counters.restarts;
 }
 
-void copy_estimate(const KeypointImage& image, const trunk::Trunk& trunk, telemetry_pose& message) {
+void copy_estimate(const KeypointImage& image, const filter::RelativeNavigationFilter& filter,
+                   telemetry_pose& message) {
   if (!image.R_camera_eci) return;
-  const Result<Vector3> position = target_position_camera(image.camera, *image.R_camera_eci, trunk);
+  const Result<Vector3> position = target_position_camera(image.camera, *image.R_camera_eci, filter);
   if (!position.ok()) return;
   copy(position.value(), message.position_camera_m);
   Matrix3 R_camera_body = *image.R_camera_eci;
-  if (trunk.has_attitude()) {
-    const navigation::AttitudeState& attitude = trunk.attitude().state();
+  if (filter.has_attitude()) {
+    const navigation::AttitudeState& attitude = filter.attitude().state();
     R_camera_body = *image.R_camera_eci * attitude.q_eci_body.toRotationMatrix();
     message.has_attitude = 1;
     copy(attitude.rate_body, message.rate_body);
-    gnc::copy_lower_triangle(trunk::attitude_covariance(trunk.estimate()), message.covariance_attitude);
+    gnc::copy_lower_triangle(filter::attitude_covariance(filter.estimate()), message.covariance_attitude);
   }
   gnc::copy_rotation(R_camera_body, message.q_camera_body);
-  copy(trunk.a_roe_m(), message.a_roe_osculating_m);
-  gnc::copy_lower_triangle(trunk.a_roe_covariance_m2(), message.covariance_a_roe);
+  copy(filter.a_roe_m(), message.a_roe_osculating_m);
+  gnc::copy_lower_triangle(filter.a_roe_covariance_m2(), message.covariance_a_roe);
 }
 
 }  // namespace
 
-/// Of the trunk after the image.
+/// Of the filter after the image.
 telemetry_pose KeypointSource::report_of(const KeypointImage& image, KeypointEditStatus edit_status, int tiles_missing,
-                                         const trunk::Trunk& trunk) const {
+                                         const filter::RelativeNavigationFilter& filter) const {
   const pose::PoseSighting& sighting = network_.sighting();
   const KeypointsUpdate& update = aiding_.last_update();
   telemetry_pose message{};
@@ -82,12 +83,12 @@ telemetry_pose KeypointSource::report_of(const KeypointImage& image, KeypointEdi
     message.keypoint_fate[k] = keypoint_fate(sighting.keypoints[k], update.keypoints[k]);
   }
   message.fate = static_cast<std::int8_t>(edit_status);
-  message.filter_runs = trunk.knowledge() == trunk::RelativeKnowledge::kEstimated ? 1 : 0;
+  message.filter_runs = filter.solution_status() == filter::SolutionStatus::kEstimated ? 1 : 0;
   message.tiles_missing = static_cast<std::int16_t>(tiles_missing);
-  copy_estimate(image, trunk, message);
+  copy_estimate(image, filter, message);
   message.nis = update.nis;
   message.nis_degrees = 2 * update.used;
-  message.acceleration_psd = trunk.relative_orbit().noise().psd();
+  message.acceleration_psd = filter.relative_orbit().noise().psd();
   copy_counters(aiding_.counters(), message);
   return message;
 }

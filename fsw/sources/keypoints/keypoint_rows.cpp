@@ -9,11 +9,11 @@
 namespace vbar::fsw::sources {
 namespace {
 
-using trunk::kAt;
+using filter::kAt;
 
 constexpr int kCount = network::kKeypoints;
 constexpr int kRows = 2 * kCount;
-constexpr int kSampled = trunk::Roe::kSize + trunk::Turn::kSize;
+constexpr int kSampled = filter::Roe::kSize + filter::Turn::kSize;
 constexpr int kLastingTurn = kAt<KeypointCommon> + KeypointCommon::kLastingTurn;
 
 // Points at 1.8 standard deviations; the central point's weight in a covariance stays above zero.
@@ -24,14 +24,14 @@ using Pixels = Eigen::Matrix<double, kRows, 1>;
 
 /// Index in the state of the sampled component k.
 constexpr int sampled_index(int k) {
-  return k < trunk::Roe::kSize ? kAt<trunk::Roe> + k : kAt<trunk::Turn> + k - trunk::Roe::kSize;
+  return k < filter::Roe::kSize ? kAt<filter::Roe> + k : kAt<filter::Turn> + k - filter::Roe::kSize;
 }
 
 constexpr std::size_t at(int k) {
   return static_cast<std::size_t>(k);
 }
 
-Status start(Transform& transform, const trunk::Estimate& estimate) {
+Status start(Transform& transform, const filter::Estimate& estimate) {
   Transform::Vector mean;
   Transform::Matrix covariance;
   for (int r = 0; r < kSampled; ++r) {
@@ -56,26 +56,26 @@ struct Seen {
   Matrix3 R_camera_body = Matrix3::Identity();
 };
 
-Result<Seen> pose_of(const Transform::Vector& x, const trunk::Trunk& trunk, const orbit::QnsElements& chief,
-                     const CameraPose& camera) {
+Result<Seen> pose_of(const Transform::Vector& x, const filter::RelativeNavigationFilter& filter,
+                     const orbit::QnsElements& chief, const CameraPose& camera) {
   const auto target = orbit::target_from_roe(chief, x.head<6>());
   if (!target.ok()) return target.status();
-  const Vector3 sight = target.value().position_eci - trunk.servicer().position_eci - camera.origin_eci;
+  const Vector3 sight = target.value().position_eci - filter.servicer().position_eci - camera.origin_eci;
   const Eigen::Quaterniond q_eci_body =
-      trunk.attitude().state().q_eci_body * navigation::quaternion_of_grp(x.tail<3>());
+      filter.attitude().state().q_eci_body * navigation::quaternion_of_grp(x.tail<3>());
   return Seen{camera.R_camera_eci * sight, camera.R_camera_eci * q_eci_body.toRotationMatrix()};
 }
 
 /// Sensitivities of the states that enter linearly, at the mean pose; false if the target is behind the camera.
-bool add_linear_states(const trunk::Trunk& trunk, const pose::Keypoints& keypoints, const CameraPose& camera,
-                       const KeypointModel& model, const Seen& mean, const Pixels& predicted,
-                       trunk::MeasurementBatch& batch) {
-  const trunk::Estimate& estimate = trunk.estimate();
+bool add_linear_states(const filter::RelativeNavigationFilter& filter, const pose::Keypoints& keypoints,
+                       const CameraPose& camera, const KeypointModel& model, const Seen& mean, const Pixels& predicted,
+                       filter::MeasurementBatch& batch) {
+  const filter::Estimate& estimate = filter.estimate();
   const auto centre_px = imaging::pixel_of(model.optics, mean.centre_camera);
   if (!centre_px.ok()) return false;
-  const double share = trunk.settings().processes.of<KeypointCommon>().correlated_share;
+  const double share = filter.settings().processes.of<KeypointCommon>().correlated_share;
   const Vector3 sight_eci = camera.R_camera_eci.transpose() * mean.centre_camera;
-  const Matrix3 axes = navigation::bearing_axes(sight_eci.normalized(), trunk.servicer());
+  const Matrix3 axes = navigation::bearing_axes(sight_eci.normalized(), filter.servicer());
   const int mount = mount_at(model.camera);
   const int stretch = kAt<KeypointCommon> + KeypointCommon::kLastingStretch + static_cast<int>(model.camera);
   const Vector3 origin = estimate.mean().segment<3>(kAt<KeypointOrigin>);
@@ -125,22 +125,22 @@ bool is_usable(const pose::Keypoint& keypoint) {
          c(0, 0) * c(1, 1) - c(1, 0) * c(1, 0) > 0.0;
 }
 
-Status keypoint_rows(const trunk::Trunk& trunk, const pose::Keypoints& keypoints, const CameraPose& camera,
-                     const KeypointModel& model, trunk::MeasurementBatch& batch) {
-  const auto chief = orbit::qns_from_cartesian(trunk.servicer());
+Status keypoint_rows(const filter::RelativeNavigationFilter& filter, const pose::Keypoints& keypoints,
+                     const CameraPose& camera, const KeypointModel& model, filter::MeasurementBatch& batch) {
+  const auto chief = orbit::qns_from_cartesian(filter.servicer());
   if (!chief.ok()) return chief.status();
-  if (!trunk.has_attitude()) return Status::kNotReady;
+  if (!filter.has_attitude()) return Status::kNotReady;
   Transform transform;
-  if (const Status status = start(transform, trunk.estimate()); status != Status::kOk) return status;
+  if (const Status status = start(transform, filter.estimate()); status != Status::kOk) return status;
   batch.clear(kRows);
   for (int k = 0; k < kCount; ++k) {
     batch.is_used[at(2 * k)] = batch.is_used[at(2 * k + 1)] = is_usable(keypoints[at(k)]);
   }
-  const Vector3 origin = trunk.estimate().mean().segment<3>(kAt<KeypointOrigin>);
+  const Vector3 origin = filter.estimate().mean().segment<3>(kAt<KeypointOrigin>);
   std::array<Pixels, Transform::kPoints> values;
   Seen mean;
   for (std::size_t point = 0; point < Transform::kPoints; ++point) {
-    const auto seen = pose_of(transform.point(point), trunk, chief.value(), camera);
+    const auto seen = pose_of(transform.point(point), filter, chief.value(), camera);
     if (!seen.ok()) return seen.status();
     if (point == 0) mean = seen.value();
     values[point].setZero();
@@ -161,18 +161,19 @@ Status keypoint_rows(const trunk::Trunk& trunk, const pose::Keypoints& keypoints
     for (int j = 0; j < kSampled; ++j) batch.sensitivity(sampled_index(j), r) = regression.jacobian(r, j);
   }
   batch.noise.topLeftCorner<kRows, kRows>() = regression.nonlinearity;
-  return add_linear_states(trunk, keypoints, camera, model, mean, regression.mean, batch) ? Status::kOk
-                                                                                          : Status::kOutOfRange;
+  return add_linear_states(filter, keypoints, camera, model, mean, regression.mean, batch) ? Status::kOk
+                                                                                           : Status::kOutOfRange;
 }
 
-Status position_rows(const trunk::Trunk& trunk, const Vector3& relative_eci, const Matrix3& covariance_m2,
-                     trunk::MeasurementBatch& batch) {
-  using Places = estimation::UnscentedTransform<trunk::Roe::kSize>;
-  const orbit::CartesianState servicer = trunk.servicer();
+Status position_rows(const filter::RelativeNavigationFilter& filter, const Vector3& relative_eci,
+                     const Matrix3& covariance_m2, filter::MeasurementBatch& batch) {
+  using Places = estimation::UnscentedTransform<filter::Roe::kSize>;
+  const orbit::CartesianState servicer = filter.servicer();
   const auto chief = orbit::qns_from_cartesian(servicer);
   if (!chief.ok()) return chief.status();
   Places transform;
-  if (const Status status = transform.start(trunk.roe(), trunk.roe_covariance()); status != Status::kOk) return status;
+  if (const Status status = transform.start(filter.roe(), filter.roe_covariance()); status != Status::kOk)
+    return status;
   std::array<Vector3, Places::kPoints> values;
   for (std::size_t k = 0; k < Places::kPoints; ++k) {
     const auto target = orbit::target_from_roe(chief.value(), transform.point(k));

@@ -1,5 +1,5 @@
 #pragma once
-// Measurement models of a camera that resolves the target: rows of the trunk for its keypoints, or for its position
+// Measurement models of a camera that resolves the target: rows of the filter for its keypoints, or for its position
 // alone.
 
 #include "fsw/imaging/camera_model.h"
@@ -26,24 +26,24 @@ struct KeypointModel {
 
 /// Index in the state of the mount of a camera.
 constexpr int mount_at(std::size_t camera) {
-  return trunk::kAt<CameraMounts> + kMountAxes * static_cast<int>(camera);
+  return filter::kAt<CameraMounts> + kMountAxes * static_cast<int>(camera);
 }
 
 /// Fills the batch with two components of each keypoint, measured minus predicted (px): those of keypoint k are rows
 /// 2k and 2k + 1. Keypoints that are not usable, or behind the camera for one of the sigma points, are not in use. The
-/// trunk stands at the time of the image and has an attitude. Any status of the orbit conversions, or kSingular for
+/// filter stands at the time of the image and has an attitude. Any status of the orbit conversions, or kSingular for
 /// an invalid covariance.
 ///
 /// Model: pixel of R_camera_eci (rho - o) + R_camera_body (p_k + origin), shifted by the error of its mount, plus the
 /// errors that all keypoints or successive images have in common (keypoint_blocks.h). ROE and rotation are
 /// sampled, all others enter linearly. The correlated share of a keypoint's covariance is a state in units of its root;
 /// the rest is noise.
-Status keypoint_rows(const trunk::Trunk& trunk, const pose::Keypoints& keypoints, const CameraPose& camera,
-                     const KeypointModel& model, trunk::MeasurementBatch& batch);
+Status keypoint_rows(const filter::RelativeNavigationFilter& filter, const pose::Keypoints& keypoints,
+                     const CameraPose& camera, const KeypointModel& model, filter::MeasurementBatch& batch);
 
 /// Fills the batch with a position of the target from the servicer's centre of mass, m, ECI axes, as from the pose of
 /// one image. Status as above.
-Status position_rows(const trunk::Trunk& trunk, const Vector3& relative_eci, const Matrix3& covariance_m2,
-                     trunk::MeasurementBatch& batch);
+Status position_rows(const filter::RelativeNavigationFilter& filter, const Vector3& relative_eci,
+                     const Matrix3& covariance_m2, filter::MeasurementBatch& batch);
 
 }  // namespace vbar::fsw::sources

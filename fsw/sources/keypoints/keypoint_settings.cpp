@@ -91,10 +91,10 @@ Result<KeypointAidingSettings> keypoint_aiding_settings(const target_model& targ
   return settings;
 }
 
-Result<trunk::TargetAttitudeSettings> attitude_settings(const target_model& target) {
+Result<filter::TargetAttitudeSettings> attitude_settings(const target_model& target) {
   const Result<navigation::Inertia> inertia = inertia_of(target);
   if (!inertia.ok()) return inertia.status();
-  trunk::TargetAttitudeSettings settings;
+  filter::TargetAttitudeSettings settings;
   settings.inertia = inertia.value();
   settings.angular_acceleration.psd = target.angular_acceleration_psd;
   return settings;

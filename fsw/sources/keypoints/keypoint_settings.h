@@ -31,6 +31,6 @@ Result<KeypointCameraSettings> keypoint_camera_settings(std::size_t unit, const 
 /// Initialisation as configured for one camera.
 Result<KeypointAidingSettings> keypoint_aiding_settings(const target_model& target,
                                                         const pose_configuration& configuration);
-Result<trunk::TargetAttitudeSettings> attitude_settings(const target_model& target);
+Result<filter::TargetAttitudeSettings> attitude_settings(const target_model& target);
 
 }  // namespace vbar::fsw::sources

@@ -13,12 +13,13 @@ namespace {
 constexpr double kKnownShare = 0.05;
 
 /// For the crop: only if the position is known well enough.
-std::optional<Vector3> predicted_position_camera(const KeypointImage& image, const trunk::Trunk& trunk) {
+std::optional<Vector3> predicted_position_camera(const KeypointImage& image,
+                                                 const filter::RelativeNavigationFilter& filter) {
   if (!image.R_camera_eci) return std::nullopt;
-  const Result<Vector3> position = target_position_camera(image.camera, *image.R_camera_eci, trunk);
+  const Result<Vector3> position = target_position_camera(image.camera, *image.R_camera_eci, filter);
   if (!position.ok()) return std::nullopt;
   const double largest_variance = kKnownShare * kKnownShare * position.value().squaredNorm();
-  if (!(trunk.position_covariance_eci().trace() <= largest_variance)) return std::nullopt;
+  if (!(filter.position_covariance_eci().trace() <= largest_variance)) return std::nullopt;
   return position.value();
 }
 
@@ -44,10 +45,10 @@ std::size_t unit_of(const Record& record) {
 }  // namespace
 
 Result<Vector3> target_position_camera(const KeypointCamera& camera, const Matrix3& R_camera_eci,
-                                       const trunk::Trunk& trunk) {
-  const Result<orbit::CartesianState> target = trunk.target();
+                                       const filter::RelativeNavigationFilter& filter) {
+  const Result<orbit::CartesianState> target = filter.target();
   if (!target.ok()) return target.status();
-  const Vector3 apart_eci = target.value().position_eci - trunk.servicer().position_eci;
+  const Vector3 apart_eci = target.value().position_eci - filter.servicer().position_eci;
   return Vector3(R_camera_eci * apart_eci - camera.position_camera_m);
 }
 
@@ -84,7 +85,7 @@ void KeypointSource::collect(Context& context, RecordFiler records) {
     camera.report.reset();
     const imaging::ImageAssembly& image = context.inbox.image(unit);
     if (!camera.settings || !image.has_image()) continue;
-    if (camera.exposures && !camera.exposures->is_for_keypoints(image.exposure_s())) camera.turns.take_bearing();
+    if (camera.exposures && !camera.exposures->is_for_keypoints(image.exposure_s())) camera.scheduler.take_bearing();
     if (!shows_keypoints(camera, image.exposure_s())) continue;
     const GpsTime time = image.image_time();
     const bool is_timely =
@@ -101,9 +102,9 @@ bool KeypointSource::shows_keypoints(const Camera& camera, double exposure_s) {
   return camera.resolution == Resolution::kResolved && camera.exposures->is_for_keypoints(exposure_s);
 }
 
-void KeypointSource::watch(GpsTime now, trunk::Trunk& trunk) {
+void KeypointSource::watch(GpsTime now, filter::RelativeNavigationFilter& filter) {
   for (Camera& camera : cameras_) {
-    if (camera.exposures) camera.resolution = resolution_of(*camera.settings, trunk, camera.resolution);
+    if (camera.exposures) camera.resolution = resolution_of(*camera.settings, filter, camera.resolution);
   }
   aiding_.check_age(now);
 }
@@ -113,11 +114,11 @@ std::optional<double> KeypointSource::wanted_exposure_s(std::size_t camera) cons
   const Camera& chosen = cameras_[camera];
   if (!chosen.exposures) return std::nullopt;
   const bool is_resolved = chosen.resolution == Resolution::kResolved || chosen.resolution == Resolution::kTooLarge;
-  const bool is_for_keypoints = aid().is_on() && is_resolved && !chosen.turns.is_bearing_due();
+  const bool is_for_keypoints = aid().is_on() && is_resolved && !chosen.scheduler.is_bearing_due();
   return is_for_keypoints ? chosen.exposures->keypoints_s : chosen.exposures->bearings_s;
 }
 
-void KeypointSource::process_record(const Record& record, Context& context, trunk::Trunk& trunk) {
+void KeypointSource::process_record(const Record& record, Context& context, filter::RelativeNavigationFilter& filter) {
   const std::size_t unit = unit_of(record);
   Camera& camera = cameras_[unit];
   const imaging::ImageAssembly& frame = context.inbox.image(unit);
@@ -131,50 +132,52 @@ void KeypointSource::process_record(const Record& record, Context& context, trun
   image.time = record.time;
   image.camera = settings.camera;
   image.sun_eci = orbit::sun_position_gcrf(record.time).normalized();
-  image.R_camera_eci = R_camera_eci_at(record.time, settings.R_camera_body, context.platform, trunk);
+  image.R_camera_eci = R_camera_eci_at(record.time, settings.R_camera_body, context.platform, filter);
   const Result<Vector3> position =
-      image.R_camera_eci ? target_position_camera(image.camera, *image.R_camera_eci, trunk) : Status::kNotReady;
+      image.R_camera_eci ? target_position_camera(image.camera, *image.R_camera_eci, filter) : Status::kNotReady;
   std::optional<double> scale;
   if (position.ok()) scale = image_scale(settings, math::sqrt(position.value().squaredNorm()));
   if (scale) image.camera.model.lasting_stretch_scale = lasting_stretch_scale(*scale);
   network_.configure(settings.network);
   const pose::PoseSighting& sighting =
-      network_.process(record.time, frame.image_number(), frame.view(), predicted_position_camera(image, trunk));
+      network_.process(record.time, frame.image_number(), frame.view(), predicted_position_camera(image, filter));
   if (sighting.status <= pose::SightingStatus::kKeypoints) {
-    remember_direction(settings, image.R_camera_eci, trunk);
+    remember_direction(settings, image.R_camera_eci, filter);
     keypoints_ = widened(sighting.keypoints, settings);
     image.keypoints = &keypoints_;
     image.pnp = sighting.pnp;
   }
-  const KeypointEditStatus edit_status = aiding_.process(image, trunk);
+  const KeypointEditStatus edit_status = aiding_.process(image, filter);
   const bool serves = aid().state() == AidState::kAiding || aid().state() == AidState::kStarting;
-  camera.turns.take_keypoints(scale, serves);
-  camera.report = report_of(image, edit_status, frame.tiles_missing(), trunk);
+  camera.scheduler.take_keypoints(scale, serves);
+  camera.report = report_of(image, edit_status, frame.tiles_missing(), filter);
 }
 
 /// The attitude and the errors of keypoints and mounts end with their only source; the orbit stays.
-void KeypointSource::stop(GpsTime now, trunk::Trunk& trunk) {
-  trunk.rest_attitude();
-  trunk::rest_block<CameraMounts>(trunk.estimate());
+void KeypointSource::stop(GpsTime now, filter::RelativeNavigationFilter& filter) {
+  filter.deactivate_attitude();
+  filter::deactivate_block<CameraMounts>(filter.estimate());
   for (Camera& camera : cameras_) camera.report.reset();
   aid().go_to(AidState::kOff, now);
 }
 
 /// By the star tracker, or the commanded attitude if it provides none.
 std::optional<Matrix3> KeypointSource::R_camera_eci_at(GpsTime time, const Matrix3& R_camera_body,
-                                                       const Platform& platform, const trunk::Trunk& trunk) {
+                                                       const Platform& platform,
+                                                       const filter::RelativeNavigationFilter& filter) {
   if (const auto R_eci_body = platform.servicer_attitude.R_eci_body_at(time)) {
     return Matrix3(R_camera_body * R_eci_body->transpose());
   }
-  if (!platform.pointing || !trunk.own_orbit().started()) return std::nullopt;
-  return Matrix3(R_camera_body * R_body_eci_of(*platform.pointing, time, trunk.servicer()));
+  if (!platform.pointing || !filter.absolute_orbit().started()) return std::nullopt;
+  return Matrix3(R_camera_body * R_body_eci_of(*platform.pointing, time, filter.servicer()));
 }
 
 void KeypointSource::remember_direction(const KeypointCameraSettings& camera,
-                                        const std::optional<Matrix3>& R_camera_eci, const trunk::Trunk& trunk) {
+                                        const std::optional<Matrix3>& R_camera_eci,
+                                        const filter::RelativeNavigationFilter& filter) {
   const auto direction = imaging::direction_of(camera.network.model, network_.sighting().region.centre_px);
-  if (!R_camera_eci || !trunk.own_orbit().started() || !direction.ok()) return;
-  last_seen_rtn_ = orbit::R_rtn_eci(trunk.servicer()) * R_camera_eci->transpose() * direction.value();
+  if (!R_camera_eci || !filter.absolute_orbit().started() || !direction.ok()) return;
+  last_seen_rtn_ = orbit::R_rtn_eci(filter.servicer()) * R_camera_eci->transpose() * direction.value();
 }
 
 }  // namespace vbar::fsw::sources

@@ -17,15 +17,15 @@ class KeypointSource {
  public:
   static constexpr std::int32_t kUse = KeypointEditing::kSource.bit;
   /// Of all cameras that are configured for keypoints, with the model of the target. A change discards the poses
-  /// collected for initialisation; the trunk stays.
+  /// collected for initialisation; the filter stays.
   bool configure(const Configuration& configuration);
   /// At most one image of each camera in a step.
   void collect(Context& context, RecordFiler records);
-  /// Predicts the crop, runs the network and updates the trunk by its keypoints.
-  void process_record(const Record& record, Context& context, trunk::Trunk& trunk);
-  [[nodiscard]] std::optional<GpsTime> owes(GpsTime /*now*/) const { return std::nullopt; }
-  void watch(GpsTime now, trunk::Trunk& trunk);
-  void stop(GpsTime now, trunk::Trunk& trunk);
+  /// Predicts the crop, runs the network and updates the filter by its keypoints.
+  void process_record(const Record& record, Context& context, filter::RelativeNavigationFilter& filter);
+  [[nodiscard]] std::optional<GpsTime> pending_since(GpsTime /*now*/) const { return std::nullopt; }
+  void watch(GpsTime now, filter::RelativeNavigationFilter& filter);
+  void stop(GpsTime now, filter::RelativeNavigationFilter& filter);
   /// Telemetry of the images of the step.
   void report(const Telemetry& telemetry) const;
 
@@ -46,18 +46,19 @@ class KeypointSource {
     std::optional<KeypointCameraSettings> settings;
     std::optional<TwoExposures> exposures;         ///< if it takes images for bearings too
     Resolution resolution = Resolution::kUnknown;  ///< of such a camera
-    ImageTurns turns;                              ///< of such a camera
+    ExposureScheduler scheduler;                   ///< of such a camera
     std::optional<GpsTime> last_image;
     std::optional<telemetry_pose> report;
   };
 
   [[nodiscard]] static bool shows_keypoints(const Camera& camera, double exposure_s);
   [[nodiscard]] static std::optional<Matrix3> R_camera_eci_at(GpsTime time, const Matrix3& R_camera_body,
-                                                              const Platform& platform, const trunk::Trunk& trunk);
+                                                              const Platform& platform,
+                                                              const filter::RelativeNavigationFilter& filter);
   void remember_direction(const KeypointCameraSettings& camera, const std::optional<Matrix3>& R_camera_eci,
-                          const trunk::Trunk& trunk);
+                          const filter::RelativeNavigationFilter& filter);
   [[nodiscard]] telemetry_pose report_of(const KeypointImage& image, KeypointEditStatus edit_status, int tiles_missing,
-                                         const trunk::Trunk& trunk) const;
+                                         const filter::RelativeNavigationFilter& filter) const;
 
   std::array<Camera, packets::kCameras> cameras_;
   pose::SpacecraftPoseNetwork network_;  ///< with the settings of the camera of the last image
@@ -69,6 +70,6 @@ class KeypointSource {
 
 /// Of the target's centre of mass with respect to the camera, in its axes, m. kNotReady without a target.
 Result<Vector3> target_position_camera(const KeypointCamera& camera, const Matrix3& R_camera_eci,
-                                       const trunk::Trunk& trunk);
+                                       const filter::RelativeNavigationFilter& filter);
 
 }  // namespace vbar::fsw::sources

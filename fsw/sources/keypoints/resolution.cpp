@@ -27,14 +27,14 @@ double lasting_stretch_scale(double image_scale) {
   return shortfall > 1.0 ? shortfall * shortfall : 1.0;
 }
 
-Resolution resolution_of(const KeypointCameraSettings& camera, const trunk::Trunk& trunk, Resolution before,
-                         const ResolutionLimits& limits) {
-  const Result<orbit::CartesianState> target = trunk.target();
+Resolution resolution_of(const KeypointCameraSettings& camera, const filter::RelativeNavigationFilter& filter,
+                         Resolution before, const ResolutionLimits& limits) {
+  const Result<orbit::CartesianState> target = filter.target();
   if (!target.ok()) return Resolution::kUnknown;
-  const Vector3 apart = target.value().position_eci - trunk.servicer().position_eci;
+  const Vector3 apart = target.value().position_eci - filter.servicer().position_eci;
   const double square = apart.squaredNorm();
   if (!(square > 0.0)) return Resolution::kUnknown;
-  const Matrix3 covariance = trunk.position_covariance_eci();
+  const Matrix3 covariance = filter.position_covariance_eci();
   const double along_variance = apart.dot(covariance * apart) / square;
   if (!(along_variance <= kKnownShare * kKnownShare * square)) return Resolution::kUnknown;
 

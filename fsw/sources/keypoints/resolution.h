@@ -34,12 +34,13 @@ struct ResolutionLimits {
 [[nodiscard]] double lasting_stretch_scale(double image_scale);
 
 /// The resolution after `before`, with hysteresis.
-[[nodiscard]] Resolution resolution_of(const KeypointCameraSettings& camera, const trunk::Trunk& trunk,
-                                       Resolution before, const ResolutionLimits& limits = {});
+[[nodiscard]] Resolution resolution_of(const KeypointCameraSettings& camera,
+                                       const filter::RelativeNavigationFilter& filter, Resolution before,
+                                       const ResolutionLimits& limits = {});
 
 /// What a camera with two exposures takes next of a target that it resolves: keypoints, as long as they aid, or poses
 /// are being collected for an attitude. Otherwise every other image is for bearings, which a distant target still has.
-class ImageTurns {
+class ExposureScheduler {
  public:
   /// An image for keypoints of this scale (empty: unknown); `serves`: they aid, or an attitude is about to begin.
   void take_keypoints(std::optional<double> scale, bool serves) {

@@ -14,16 +14,16 @@ double distance(const View& a, const View& b) {
 
 }  // namespace
 
-void SeenViews::clear() {
+void ViewNovelty::clear() {
   count_ = 0;
   recent_count_ = 0;
 }
 
-double SeenViews::faded(const Seen& seen, GpsTime time) const {
+double ViewNovelty::faded(const Seen& seen, GpsTime time) const {
   return seen.count * math::exp(-seconds(time - seen.time) / settings_.memory_s);
 }
 
-double SeenViews::scale(const View& view, GpsTime time) const {
+double ViewNovelty::scale(const View& view, GpsTime time) const {
   double sum = 0.0;
   const auto weigh = [&](const Seen& seen) {
     sum += faded(seen, time) * math::exp(-distance(seen.view, view) / settings_.angle);
@@ -36,7 +36,7 @@ double SeenViews::scale(const View& view, GpsTime time) const {
   return math::is_finite(scale) ? scale : 1.0;
 }
 
-void SeenViews::add(const View& view, GpsTime time) {
+void ViewNovelty::add(const View& view, GpsTime time) {
   if (!math::is_finite(view.q_camera_body.coeffs().sum() + view.log_range)) return;
   for (std::size_t k = 0; k < kMaxRecent && recent_count_ > 0; ++k) {
     if (seconds(time - recent_[0].time) <= settings_.left_out_s) break;
@@ -50,13 +50,13 @@ void SeenViews::add(const View& view, GpsTime time) {
   recent_[recent_count_++] = {view, 1.0, time};
 }
 
-void SeenViews::drop_oldest_recent() {
+void ViewNovelty::drop_oldest_recent() {
   --recent_count_;
   for (std::size_t k = 0; k < recent_count_; ++k) recent_[k] = recent_[k + 1];
 }
 
 /// Into the nearest view, or as a new one in place of the one with the smallest count.
-void SeenViews::keep(const Seen& seen) {
+void ViewNovelty::keep(const Seen& seen) {
   std::size_t nearest = kMaxViews;
   double nearest_distance = settings_.merged_angle;
   std::size_t least = 0;

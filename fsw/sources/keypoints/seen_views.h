@@ -30,7 +30,7 @@ struct View {
   double log_range = 0.0;  ///< natural logarithm of the range in m: a factor of e^0.25 counts as 0.25 rad
 };
 
-class SeenViews {
+class ViewNovelty {
  public:
   void configure(const NoveltySettings& settings) { settings_ = settings; }
   void clear();

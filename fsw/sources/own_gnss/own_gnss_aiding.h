@@ -1,5 +1,5 @@
 #pragma once
-// Single-point positions of the servicer's own receiver as an aid of the trunk: they determine its own orbit.
+// Single-point positions of the servicer's own receiver as an aid of the filter: they determine its own orbit.
 
 #include <cstdint>
 #include <optional>
@@ -14,7 +14,7 @@ namespace vbar::fsw::sources {
 struct OwnGnssCounters {
   std::int32_t used = 0;
   std::int32_t no_solution = 0;  ///< epochs without a single-point solution
-  std::int32_t refused = 0;      ///< positions that contradict the own orbit
+  std::int32_t rejected = 0;     ///< positions that contradict the own orbit
 };
 
 class OwnGnssAiding {
@@ -22,12 +22,13 @@ class OwnGnssAiding {
   /// Nominal phase centre from the centre of mass, m, body axes.
   void set_antenna(const Vector3& antenna_body_m) { antenna_body_m_ = antenna_body_m; }
 
-  /// Processes an epoch at whose tag the trunk stands, and returns its single-point solution (status: that of
+  /// Processes an epoch at whose tag the filter stands, and returns its single-point solution (status: that of
   /// single_point(), or kNotReady for another time). The position is referred to the centre of mass; without an
   /// attitude its covariance includes the lever arm.
   Result<navigation::SinglePoint> process(const gnss::ObservationEpoch& epoch, const std::optional<Matrix3>& R_eci_body,
                                           const navigation::EphemerisStore& ephemerides,
-                                          const navigation::EarthFrame& frame, trunk::Trunk& trunk);
+                                          const navigation::EarthFrame& frame,
+                                          filter::RelativeNavigationFilter& filter);
 
   /// At each step: suspends after kSilence without an accepted position.
   void watch(GpsTime now);

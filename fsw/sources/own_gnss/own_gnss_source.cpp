@@ -25,12 +25,12 @@ void OwnGnssSource::collect(Context& context, RecordFiler records) {
   }
 }
 
-void OwnGnssSource::process_record(const Record& record, Context& context, trunk::Trunk& trunk) {
+void OwnGnssSource::process_record(const Record& record, Context& context, filter::RelativeNavigationFilter& filter) {
   const gnss::ObservationEpoch* epoch = context.gnss.waiting(Receiver::kServicer).find(record.time);
   if (epoch == nullptr) return;
-  const auto frame = navigation::EarthFrame::at(record.time, trunk.settings().earth);
+  const auto frame = navigation::EarthFrame::at(record.time, filter.settings().earth);
   const auto R_eci_body = context.platform.servicer_attitude.R_eci_body_at(record.time);
-  const auto point = aiding_.process(*epoch, R_eci_body, context.gnss.ephemerides(), frame, trunk);
+  const auto point = aiding_.process(*epoch, R_eci_body, context.gnss.ephemerides(), frame, filter);
   if (point.ok()) context.gnss.keep_servicer_clock(record.time, point.value().clock_m);
 }
 

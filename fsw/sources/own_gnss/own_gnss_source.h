@@ -16,10 +16,10 @@ class OwnGnssSource {
   static constexpr std::int32_t kUse = navigation_configuration::kUseOwnGnss;
   bool configure(const Configuration& configuration);
   void collect(Context& context, RecordFiler records);
-  void process_record(const Record& record, Context& context, trunk::Trunk& trunk);
-  [[nodiscard]] std::optional<GpsTime> owes(GpsTime /*now*/) const { return std::nullopt; }
-  void watch(GpsTime now, trunk::Trunk& /*trunk*/) { aiding_.watch(now); }
-  void stop(GpsTime now, trunk::Trunk& /*trunk*/) { aid().go_to(AidState::kOff, now); }
+  void process_record(const Record& record, Context& context, filter::RelativeNavigationFilter& filter);
+  [[nodiscard]] std::optional<GpsTime> pending_since(GpsTime /*now*/) const { return std::nullopt; }
+  void watch(GpsTime now, filter::RelativeNavigationFilter& /*filter*/) { aiding_.watch(now); }
+  void stop(GpsTime now, filter::RelativeNavigationFilter& /*filter*/) { aid().go_to(AidState::kOff, now); }
   void report(const Telemetry& /*telemetry*/) const {}
   [[nodiscard]] Aid& aid() { return aiding_.aid(); }
   [[nodiscard]] const Aid& aid() const { return aiding_.aid(); }

@@ -1,5 +1,5 @@
 #pragma once
-// Ranges of a laser range finder as an aid of the trunk: one row each, with the bias of the instrument as a state.
+// Ranges of a laser range finder as an aid of the filter: one row each, with the bias of the instrument as a state.
 //
 // A range alone initialises nothing: it is used once the relative orbit is estimated. Ranges that contradict the orbit
 // never change it: the source is suspended until several agree again.
@@ -21,31 +21,32 @@ struct RangeSettings {
 };
 
 enum class RangeEditStatus : std::uint8_t {
-  kNone,     ///< no relative orbit yet
-  kRefused,  ///< beyond the gate, or while the source is suspended
+  kNone,      ///< no relative orbit yet
+  kRejected,  ///< beyond the gate, or while the source is suspended
   kUsed,
 };
 
 struct RangeCounters {
   std::int32_t used = 0;
-  std::int32_t refused = 0;
+  std::int32_t rejected = 0;
 };
 
 /// Fills the batch with the distance of the centres of mass, plus the bias. Any status of the orbit conversions.
-Status range_rows(const trunk::Trunk& trunk, double range_m, double noise_sigma_m, trunk::MeasurementBatch& batch);
+Status range_rows(const filter::RelativeNavigationFilter& filter, double range_m, double noise_sigma_m,
+                  filter::MeasurementBatch& batch);
 
 class RangeAiding {
  public:
-  static constexpr trunk::MeasurementSource kSource{.bit = navigation_configuration::kUseRangeFinder};
+  static constexpr filter::MeasurementSource kSource{.bit = navigation_configuration::kUseRangeFinder};
 
   void configure(const RangeSettings& settings) { settings_ = settings; }
 
-  /// A range in m; the trunk stands at its time.
-  RangeEditStatus process(double range_m, trunk::Trunk& trunk);
+  /// A range in m; the filter stands at its time.
+  RangeEditStatus process(double range_m, filter::RelativeNavigationFilter& filter);
   /// Nothing was measured until `now`.
   void check_age(GpsTime now);
-  /// Not selected any more: the bias rests.
-  void stop(GpsTime now, trunk::Trunk& trunk);
+  /// Deactivates the bias: the source is not selected any more.
+  void stop(GpsTime now, filter::RelativeNavigationFilter& filter);
 
   [[nodiscard]] const Aid& aid() const { return aid_; }
   [[nodiscard]] Aid& aid() { return aid_; }
@@ -56,14 +57,14 @@ class RangeAiding {
   [[nodiscard]] double nis() const { return nis_; }
 
  private:
-  RangeEditStatus refuse(GpsTime time);
+  RangeEditStatus reject(GpsTime time);
 
   RangeSettings settings_;
   Aid aid_;
   RangeCounters counters_;
   GpsTime last_accepted_;
-  int refused_in_excess_ = 0;  ///< refusals minus acceptances, not below zero
-  int agreeing_in_a_row_ = 0;  ///< while suspended
+  int rejected_in_excess_ = 0;  ///< rejections minus acceptances, not below zero
+  int agreeing_in_a_row_ = 0;   ///< while suspended
   double prefit_m_ = 0.0;
   double nis_ = 0.0;
 };

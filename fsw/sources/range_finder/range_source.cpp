@@ -18,7 +18,7 @@ bool RangeSource::configure(const Configuration& configuration) {
 }
 
 void RangeSource::collect(Context& context, RecordFiler records) {
-  folded_.reset();
+  processed_.reset();
   const auto& packets = context.inbox.queue<range_measurement>();
   for (std::size_t k = 0; k < packets.size(); ++k) {
     const GpsTime time = packets[k].tag.time;
@@ -35,26 +35,26 @@ void RangeSource::collect(Context& context, RecordFiler records) {
   }
 }
 
-void RangeSource::process_record(const Record& record, Context& /*context*/, trunk::Trunk& trunk) {
-  folded_ = record.time;
+void RangeSource::process_record(const Record& record, Context& /*context*/, filter::RelativeNavigationFilter& filter) {
+  processed_ = record.time;
   range_m_ = ranges_m_[record.number % kMaxWaiting];
-  edit_status_ = aiding_.process(range_m_, trunk);
+  edit_status_ = aiding_.process(range_m_, filter);
 }
 
 void RangeSource::report(const Telemetry& telemetry) const {
-  if (!folded_) return;
-  constexpr int kBias = trunk::kAt<RangeBias>;
+  if (!processed_) return;
+  constexpr int kBias = filter::kAt<RangeBias>;
   telemetry_range message{};
   message.step = telemetry.step;
   message.range_m = range_m_;
   message.fate = static_cast<std::int8_t>(edit_status_);
   message.prefit_m = aiding_.prefit_m();
   message.nis = aiding_.nis();
-  message.bias_m = telemetry.trunk.estimate().mean(kBias);
-  message.bias_sigma_m = math::sqrt(telemetry.trunk.estimate().variance(kBias));
+  message.bias_m = telemetry.filter.estimate().mean(kBias);
+  message.bias_sigma_m = math::sqrt(telemetry.filter.estimate().variance(kBias));
   message.used = aiding_.counters().used;
-  message.refused = aiding_.counters().refused;
-  telemetry.outbox.send(*folded_, message);
+  message.refused = aiding_.counters().rejected;
+  telemetry.outbox.send(*processed_, message);
 }
 
 }  // namespace vbar::fsw::sources

@@ -17,10 +17,10 @@ class RangeSource {
   static constexpr std::int32_t kUse = RangeAiding::kSource.bit;
   bool configure(const Configuration& configuration);
   void collect(Context& context, RecordFiler records);
-  void process_record(const Record& record, Context& context, trunk::Trunk& trunk);
-  [[nodiscard]] std::optional<GpsTime> owes(GpsTime /*now*/) const { return std::nullopt; }
-  void watch(GpsTime now, trunk::Trunk& /*trunk*/) { aiding_.check_age(now); }
-  void stop(GpsTime now, trunk::Trunk& trunk) { aiding_.stop(now, trunk); }
+  void process_record(const Record& record, Context& context, filter::RelativeNavigationFilter& filter);
+  [[nodiscard]] std::optional<GpsTime> pending_since(GpsTime /*now*/) const { return std::nullopt; }
+  void watch(GpsTime now, filter::RelativeNavigationFilter& /*filter*/) { aiding_.check_age(now); }
+  void stop(GpsTime now, filter::RelativeNavigationFilter& filter) { aiding_.stop(now, filter); }
   /// Telemetry of the last range of the step, if there was one.
   void report(const Telemetry& telemetry) const;
 
@@ -30,13 +30,13 @@ class RangeSource {
   [[nodiscard]] const RangeAiding& aiding() const { return aiding_; }
 
  private:
-  /// Records that wait for their fold.
+  /// Most records that wait to be processed.
   static constexpr std::size_t kMaxWaiting = 64;
 
   RangeAiding aiding_;
   std::array<double, kMaxWaiting> ranges_m_{};  ///< by number of the record, modulo the size
   std::uint32_t next_number_ = 0;
-  std::optional<GpsTime> folded_;  ///< of the step
+  std::optional<GpsTime> processed_;  ///< of the step
   double range_m_ = 0.0;
   RangeEditStatus edit_status_ = RangeEditStatus::kNone;
 };

@@ -17,8 +17,8 @@ namespace nav = fsw::navigation;
 
 constexpr double kWaypointHours[] = {6.0, 12.0, 18.0, 24.0, 28.0, 32.0, 36.0};
 
-fsw::trunk::TrunkSettings blocks_for(const TrueFlight& flight, const SensorErrors& errors) {
-  fsw::trunk::TrunkSettings settings;
+fsw::filter::FilterSettings blocks_for(const TrueFlight& flight, const SensorErrors& errors) {
+  fsw::filter::FilterSettings settings;
   settings.earth = flight.earth;
   settings.processes.of<fsw::sources::CentroidWander>() = {.sigma = errors.shape_share * kTargetRadius_m,
                                                            .time_s = errors.shape_time_s};
@@ -103,7 +103,7 @@ TEST(AnglesOnly, KnowsTheTargetAtTheWaypoints) {
     EXPECT_EQ(outcome.counters.restarts, 0);
     EXPECT_EQ(outcome.counters.batches_failed, 0);
     // One in a thousand by the gate, of some 1800.
-    EXPECT_LE(outcome.counters.refused, 10);
+    EXPECT_LE(outcome.counters.rejected, 10);
   }
   // What the mission asks for, at waypoints 1 to 7.
   constexpr double kAsked[] = {40.0, 20.0, 3.0, 1.0, 1.5, 0.7, 1.0};

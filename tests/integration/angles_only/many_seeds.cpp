@@ -34,15 +34,15 @@ int main(int argc, char** argv) {
     sensor_errors.outlier_share = option("OUTLIERS", 0.0);
     sensor_errors.gnss_white_m = option("GNSS_WHITE", sensor_errors.gnss_white_m);
     test::SimulatedSensors sensors(flight, sensor_errors, seed);
-    fsw::trunk::TrunkSettings blocks;
+    fsw::filter::FilterSettings blocks;
     blocks.earth = flight.earth;
     blocks.relative_orbit.acceleration.psd = option("PSD", blocks.relative_orbit.acceleration.psd);
     blocks.processes.of<fsw::sources::BearingBias>().sigma = option("BIAS_SIGMA", 3.0) / 206264.8;
     blocks.burn_sigma_relative = option("MAN", blocks.burn_sigma_relative);
     blocks.processes.of<fsw::sources::CentroidWander>() = {.sigma = option("WANDER", 0.035),
                                                            .time_s = option("WANDER_TIME", 300.0)};
-    blocks.own_orbit.slow_error_sigma_m = option("OWN_SIGMA", blocks.own_orbit.slow_error_sigma_m);
-    blocks.own_orbit.acceleration_psd = option("OWN_PSD", blocks.own_orbit.acceleration_psd);
+    blocks.absolute_orbit.slow_error_sigma_m = option("OWN_SIGMA", blocks.absolute_orbit.slow_error_sigma_m);
+    blocks.absolute_orbit.acceleration_psd = option("OWN_PSD", blocks.absolute_orbit.acceleration_psd);
     fsw::sources::BearingSettings bearings;
     bearings.model.centroid_noise_m = option("CENTROID", 0.0);
     test::AnglesOnlyFlight navigation(blocks, bearings, sensors.apriori());
@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
         const fsw::Vector3 error =
             test::estimated_position_rtn(navigation.trunk()) - test::true_position_rtn(flight.epochs[k]);
         const fsw::Matrix6 covariance =
-            fsw::trunk::covariance_rtn(navigation.trunk().estimate(), navigation.trunk().servicer());
+            fsw::filter::covariance_rtn(navigation.trunk().estimate(), navigation.trunk().servicer());
         const double sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
         std::printf(" | %8.2f (%7.2f) %4.1f", error.norm(), sigma,
                     test::roe_nees(flight.epochs[k], navigation.trunk()));
@@ -72,7 +72,7 @@ int main(int argc, char** argv) {
     }
     const auto& counters = navigation.bearings().counters();
     std::printf(" | psd %.0e nis %.3f own orbit %.2f used %d refused %d failed %d inflated %d restarts %d\n",
-                navigation.trunk().relative_orbit().noise().psd(), nis / updates, own, counters.used, counters.refused,
+                navigation.trunk().relative_orbit().noise().psd(), nis / updates, own, counters.used, counters.rejected,
                 counters.batches_failed, counters.inflations, counters.restarts);
   }
   std::printf("med");

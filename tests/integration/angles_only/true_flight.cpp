@@ -201,11 +201,11 @@ MeasuredEpoch SimulatedSensors::measure(std::size_t index) {
   return epoch;
 }
 
-fsw::trunk::TargetApriori SimulatedSensors::apriori() {
+fsw::filter::TargetApriori SimulatedSensors::apriori() {
   const TrueEpoch& truth = flight_.epochs.front();
   const orbit::QnsElements servicer = must(orbit::qns_from_cartesian(truth.servicer));
   Vector6 roe = must(orbit::roe_of_target(truth.servicer, truth.target));
-  fsw::trunk::TargetApriori apriori;
+  fsw::filter::TargetApriori apriori;
   apriori.time = truth.time;
   apriori.sigma_a_roe_m << 30.0, 1000.0, 200.0, 200.0, 200.0, 200.0;
   for (int k = 0; k < 6; ++k) roe(k) += apriori.sigma_a_roe_m(k) / servicer.a * normal();
@@ -217,41 +217,41 @@ Vector3 true_position_rtn(const TrueEpoch& epoch) {
   return orbit::relative_state_rtn(epoch.servicer, epoch.target).position_rtn;
 }
 
-AnglesOnlyFlight::AnglesOnlyFlight(const fsw::trunk::TrunkSettings& blocks,
+AnglesOnlyFlight::AnglesOnlyFlight(const fsw::filter::FilterSettings& blocks,
                                    const fsw::sources::BearingSettings& bearings,
-                                   const fsw::trunk::TargetApriori& apriori)
-    : trunk_(std::make_unique<fsw::trunk::Trunk>()) {
-  trunk_->configure(blocks);
-  trunk_->set_apriori(apriori);
+                                   const fsw::filter::TargetApriori& apriori)
+    : filter_(std::make_unique<fsw::filter::RelativeNavigationFilter>()) {
+  filter_->configure(blocks);
+  filter_->set_apriori(apriori);
   bearings_.configure(bearings);
 }
 
 fsw::sources::BearingEditStatus AnglesOnlyFlight::update(const MeasuredEpoch& epoch,
                                                          const std::vector<nav::Burn>& burns) {
   for (const auto& [time, position] : epoch.positions) {
-    trunk_->advance_to(time, burns);
-    trunk_->take_own_position(position);
+    filter_->advance_to(time, burns);
+    filter_->update_absolute_orbit(position);
   }
-  trunk_->advance_to(epoch.time, burns);
-  return bearings_.process(epoch.time, epoch.bearing, epoch.sun_eci, *trunk_);
+  filter_->advance_to(epoch.time, burns);
+  return bearings_.process(epoch.time, epoch.bearing, epoch.sun_eci, *filter_);
 }
 
-double roe_nees(const TrueEpoch& epoch, const fsw::trunk::Trunk& trunk) {
+double roe_nees(const TrueEpoch& epoch, const fsw::filter::RelativeNavigationFilter& filter) {
   const Vector6 true_roe = must(orbit::roe_of_target(epoch.servicer, epoch.target));
   const double a = must(orbit::qns_from_cartesian(epoch.servicer)).a;
-  const Vector6 error = trunk.a_roe_m() - a * true_roe;
-  return error.dot(fsw::math::Cholesky6(trunk.a_roe_covariance_m2()).solve(error));
+  const Vector6 error = filter.a_roe_m() - a * true_roe;
+  return error.dot(fsw::math::Cholesky6(filter.a_roe_covariance_m2()).solve(error));
 }
 
-double own_orbit_nees(const TrueEpoch& epoch, const fsw::trunk::Trunk& trunk) {
+double own_orbit_nees(const TrueEpoch& epoch, const fsw::filter::RelativeNavigationFilter& filter) {
   Vector6 error;
-  error << trunk.servicer().position_eci - epoch.servicer.position_eci,
-      trunk.servicer().velocity_eci - epoch.servicer.velocity_eci;
-  return error.dot(fsw::math::Cholesky6(trunk.own_orbit().covariance()).solve(error));
+  error << filter.servicer().position_eci - epoch.servicer.position_eci,
+      filter.servicer().velocity_eci - epoch.servicer.velocity_eci;
+  return error.dot(fsw::math::Cholesky6(filter.absolute_orbit().covariance()).solve(error));
 }
 
-Vector3 estimated_position_rtn(const fsw::trunk::Trunk& trunk) {
-  return orbit::relative_state_rtn(trunk.servicer(), must(trunk.target())).position_rtn;
+Vector3 estimated_position_rtn(const fsw::filter::RelativeNavigationFilter& filter) {
+  return orbit::relative_state_rtn(filter.servicer(), must(filter.target())).position_rtn;
 }
 
 }  // namespace vbar::test

@@ -58,7 +58,7 @@ struct SensorErrors {
 struct MeasuredEpoch {
   fsw::GpsTime time;  ///< of the image
   fsw::Vector3 sun_eci = fsw::Vector3::Zero();
-  std::vector<std::pair<fsw::GpsTime, fsw::trunk::OwnPosition>> positions;
+  std::vector<std::pair<fsw::GpsTime, fsw::filter::AbsolutePosition>> positions;
   std::optional<fsw::navigation::BearingMeasurement> bearing;
 };
 
@@ -69,7 +69,7 @@ class SimulatedSensors {
 
   MeasuredEpoch measure(std::size_t index);
   /// Two-line-element quality: 1 sigma a * (da, dl, de, di) of 30, 1000, 200, 200 m.
-  fsw::trunk::TargetApriori apriori();
+  fsw::filter::TargetApriori apriori();
   /// As flight software knows them.
   const std::vector<fsw::navigation::Burn>& known_burns() const { return known_burns_; }
 
@@ -90,25 +90,25 @@ class SimulatedSensors {
 
 /// The target's position in the servicer's RTN, m: true, and as navigation has it.
 fsw::Vector3 true_position_rtn(const TrueEpoch& epoch);
-/// Trunk, own receiver and bearings, as the flight software composes them.
+/// RelativeNavigationFilter, own receiver and bearings, as the flight software composes them.
 class AnglesOnlyFlight {
  public:
-  AnglesOnlyFlight(const fsw::trunk::TrunkSettings& blocks, const fsw::sources::BearingSettings& bearings,
-                   const fsw::trunk::TargetApriori& apriori);
+  AnglesOnlyFlight(const fsw::filter::FilterSettings& blocks, const fsw::sources::BearingSettings& bearings,
+                   const fsw::filter::TargetApriori& apriori);
   fsw::sources::BearingEditStatus update(const MeasuredEpoch& epoch, const std::vector<fsw::navigation::Burn>& burns);
-  [[nodiscard]] bool valid() const { return trunk_->knowledge() == fsw::trunk::RelativeKnowledge::kEstimated; }
-  [[nodiscard]] const fsw::trunk::Trunk& trunk() const { return *trunk_; }
+  [[nodiscard]] bool valid() const { return filter_->solution_status() == fsw::filter::SolutionStatus::kEstimated; }
+  [[nodiscard]] const fsw::filter::RelativeNavigationFilter& trunk() const { return *filter_; }
   [[nodiscard]] const fsw::sources::BearingAiding& bearings() const { return bearings_; }
 
  private:
-  std::unique_ptr<fsw::trunk::Trunk> trunk_;
+  std::unique_ptr<fsw::filter::RelativeNavigationFilter> filter_;
   fsw::sources::BearingAiding bearings_;
 };
 
 /// Normalised error squared of the estimated ROE: six on average if the filter is honest.
-double roe_nees(const TrueEpoch& epoch, const fsw::trunk::Trunk& trunk);
+double roe_nees(const TrueEpoch& epoch, const fsw::filter::RelativeNavigationFilter& filter);
 /// Of the servicer's own orbit, position and velocity: likewise.
-double own_orbit_nees(const TrueEpoch& epoch, const fsw::trunk::Trunk& trunk);
-fsw::Vector3 estimated_position_rtn(const fsw::trunk::Trunk& trunk);
+double own_orbit_nees(const TrueEpoch& epoch, const fsw::filter::RelativeNavigationFilter& filter);
+fsw::Vector3 estimated_position_rtn(const fsw::filter::RelativeNavigationFilter& filter);
 
 }  // namespace vbar::test

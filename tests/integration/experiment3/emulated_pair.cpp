@@ -137,7 +137,7 @@ fsw::Vector6 EmulatedPair::error() const {
 
 double EmulatedPair::nees() const {
   const fsw::Vector6 e = error();
-  return e.dot(fsw::trunk::covariance_rtn(trunk().estimate(), trunk().servicer()).inverse() * e);
+  return e.dot(fsw::filter::covariance_rtn(trunk().estimate(), trunk().servicer()).inverse() * e);
 }
 
 int EmulatedPair::wrong_integers() const {
@@ -168,7 +168,8 @@ int EmulatedPair::wrong_integers() const {
 void EmulatedPair::hold(std::size_t place, std::size_t reference, double cycles) {
   // The navigation is this object's own and not const: reaching into it is what the mistakes consist of.
   auto& filter = const_cast<CarrierFilter&>(carrier().filter());  // NOLINT(cppcoreguidelines-pro-type-const-cast)
-  auto& estimator = const_cast<fsw::trunk::Trunk&>(trunk());      // NOLINT(cppcoreguidelines-pro-type-const-cast)
+  auto& estimator =
+      const_cast<fsw::filter::RelativeNavigationFilter&>(trunk());  // NOLINT(cppcoreguidelines-pro-type-const-cast)
   filter.hold(estimator, place, reference, cycles);
 }
 
@@ -184,7 +185,7 @@ std::optional<EmulatedPair::Offer> EmulatedPair::offer() const {
   }
   const auto count = static_cast<Eigen::Index>(offer.pairs.size());
   if (count < fsw::sources::AmbiguityResolution::kMinHeld) return std::nullopt;
-  constexpr Eigen::Index kSize = fsw::trunk::State::kSize;
+  constexpr Eigen::Index kSize = fsw::filter::State::kSize;
   Eigen::MatrixXd difference = Eigen::MatrixXd::Zero(count, kSize);
   for (Eigen::Index row = 0; row < count; ++row) {
     const auto& [place, base] = offer.pairs[static_cast<std::size_t>(row)];

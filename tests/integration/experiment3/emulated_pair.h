@@ -55,7 +55,7 @@ class EmulatedPair {
   [[nodiscard]] bool done() const { return next_ >= coast_.epochs().size(); }
 
   [[nodiscard]] const fsw::gnc::Navigation& navigation() const { return *navigation_; }
-  [[nodiscard]] const fsw::trunk::Trunk& trunk() const { return navigation_->trunk().trunk(); }
+  [[nodiscard]] const fsw::filter::RelativeNavigationFilter& trunk() const { return navigation_->trunk().trunk(); }
   [[nodiscard]] const fsw::sources::CarrierAiding& carrier() const {
     return navigation_->trunk().source<fsw::sources::CarrierSource>().aiding();
   }

@@ -22,7 +22,7 @@ std::vector<std::string> snapshot_files;
 
 constexpr Duration kPeriod = duration_of_seconds(5);
 
-std::span<unsigned char> trunk_in(Article& article) {
+std::span<unsigned char> filter_in(Article& article) {
   return bytes_of(state_of(article).navigation_.trunk().trunk());
 }
 
@@ -55,9 +55,10 @@ TEST(StateFlips, AreReportedAndCorrectedInTheNextStep) {
   for (const std::string& file : snapshot_files) {
     Continued before;
     ASSERT_NO_FATAL_FAILURE(continue_from(file, before));
-    ASSERT_NO_FATAL_FAILURE(expect_flips_corrected(before.memory, trunk_in, before.now + kPeriod, kPeriod, {})) << file;
+    ASSERT_NO_FATAL_FAILURE(expect_flips_corrected(before.memory, filter_in, before.now + kPeriod, kPeriod, {}))
+        << file;
     std::printf("%s: %d flips among %zu bytes, each reported and corrected in the next step\n", file.c_str(), kFlips,
-                sizeof(trunk::Trunk));
+                sizeof(filter::RelativeNavigationFilter));
   }
 }
 

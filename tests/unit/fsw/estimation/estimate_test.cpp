@@ -119,13 +119,13 @@ TEST(Estimate, IdleComponentsStayIdle) {
   estimate.reset(0, 1.0, 4.0);
   estimate.reset(2, 3.0, 9.0);
   estimate.update({1.0, 1.0, 1.0, 1.0}, 2.0, 1.0, kNoGate);
-  EXPECT_TRUE(estimate.is_idle(1));
-  EXPECT_TRUE(estimate.is_idle(3));
+  EXPECT_TRUE(estimate.is_inactive(1));
+  EXPECT_TRUE(estimate.is_inactive(3));
   EXPECT_EQ(estimate.mean(1), 0.0);
   EXPECT_EQ(estimate.covariance(0, 1), 0.0);
   EXPECT_NE(estimate.covariance(0, 2), 0.0);
   estimate.reset(2, 0.0, 0.0);
-  EXPECT_TRUE(estimate.is_idle(2));
+  EXPECT_TRUE(estimate.is_inactive(2));
   EXPECT_EQ(estimate.covariance(0, 2), 0.0);
 }
 

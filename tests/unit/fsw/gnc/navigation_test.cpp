@@ -175,7 +175,7 @@ TEST_F(NavigationTest, CoastsForHours) {
   EXPECT_EQ(inbox_.receive(packet_of({0}, measurement_of(servicer_state()))), Status::kOk);
   for (std::int64_t s = 0; s <= 7200; s += 60) update(s);
   ASSERT_TRUE(navigation_.state().valid);
-  const navigation::Propagation gravity(GpsTime{}, trunk::TrunkSettings{}.earth, Vector3::UnitX());
+  const navigation::Propagation gravity(GpsTime{}, filter::FilterSettings{}.earth, Vector3::UnitX());
   const orbit::CartesianState expected = gravity.coast(servicer_state(), 7200.0);
   // The rotation of the Earth is accurate over segments of ten minutes, and the last ten to twenty are flown under J2.
   EXPECT_LT((navigation_.state().servicer.position_eci - expected.position_eci).norm(), 60.0);

@@ -25,8 +25,9 @@ TEST(StateIntegrity, DamageToEstimateAndCopyIsAColdStart) {
   const std::span<unsigned char> estimate = estimate_in(article);
   flip(estimate[1000], 3);
   // The copy lies somewhere behind: the first place with the same bytes as the first two means.
-  const trunk::Trunk& trunk = state_of(article).navigation_.trunk().trunk();
-  const std::span<unsigned char> behind = bytes_of(*(&trunk + 1), sizeof(TrunkNavigation) - sizeof(trunk::Trunk));
+  const filter::RelativeNavigationFilter& trunk = state_of(article).navigation_.trunk().trunk();
+  const std::span<unsigned char> behind =
+      bytes_of(*(&trunk + 1), sizeof(TrunkNavigation) - sizeof(filter::RelativeNavigationFilter));
   const auto copy = std::search(behind.begin(), behind.end(), estimate.begin(), estimate.begin() + 16);
   ASSERT_NE(copy, behind.end());
   flip(*copy, 0);
@@ -44,7 +45,7 @@ TEST(StateIntegrity, DamageToEstimateAndCopyIsAColdStart) {
 }
 
 TEST(StateIntegrity, OfATrunkAndItsCopy) {
-  const auto trunk = std::make_unique<trunk::Trunk>();
+  const auto trunk = std::make_unique<filter::RelativeNavigationFilter>();
   const auto integrity = std::make_unique<StateIntegrity>();
   EXPECT_EQ(integrity->verify(*trunk), Integrity::kIntact) << "nothing is sealed yet";
   integrity->seal(*trunk);

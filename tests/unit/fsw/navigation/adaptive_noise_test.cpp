@@ -16,7 +16,7 @@ void feed(AdaptiveNoise& noise, double correlation, double scale, int count, boo
   Vector2 value = random.normal2();
   for (int k = 0; k < count; ++k) {
     value = correlation * value + std::sqrt(1.0 - correlation * correlation) * random.normal2();
-    noise.take(scale * value, cause);
+    noise.add(scale * value, cause);
     if (interrupted && k % 20 == 19) noise.interrupt();
   }
 }

@@ -15,7 +15,7 @@
 #include "tests/support/accuracy.h"
 #include "tests/unit/fsw/navigation/angles_only_scene.h"
 
-namespace vbar::fsw::trunk {
+namespace vbar::fsw::filter {
 namespace {
 
 using namespace navigation::test;
@@ -131,29 +131,29 @@ Square covariance_of(const Estimate& estimate) {
 }
 
 /// The process of a component behind the head.
-const GaussMarkov& process_of(int k, const TrunkSettings& settings) {
+const GaussMarkov& process_of(int k, const FilterSettings& settings) {
   if (k < 10) return settings.processes.of<BearingBias>();
   return k == 10 ? settings.processes.of<BrightnessOffset>() : settings.processes.of<CentroidWander>();
 }
 
 TEST(UdReplay, ADayOfBearingsHasTheSameMeansAndSigmas) {
-  const auto trunk = std::make_unique<Trunk>();
-  TrunkSettings settings;
+  const auto filter = std::make_unique<RelativeNavigationFilter>();
+  FilterSettings settings;
   settings.earth = scene_earth();
-  trunk->configure(settings);
-  trunk->advance_to(scene_start(), {});
+  filter->configure(settings);
+  filter->advance_to(scene_start(), {});
   orbit::CartesianState servicer = scene_servicer();
   orbit::CartesianState target = scene_target(servicer, roe_of_metres(-30.0, -20000.0, 0.0, 500.0, 0.0, 500.0));
-  trunk->set_states(servicer, target);
+  filter->set_states(servicer, target);
   const Vector6 wrong = roe_of_metres(-35.0, -20400.0, 40.0, 460.0, -30.0, 480.0);
   Vector6 sigma;
   sigma << 10.0, 500.0, 50.0, 50.0, 50.0, 50.0;
   sigma /= kA;
-  trunk->begin_relative(wrong, sigma.cwiseAbs2().asDiagonal(), RelativeKnowledge::kEstimated);
-  Estimate& estimate = trunk->estimate();
-  begin_block<BearingBias>(estimate, settings.processes.of<BearingBias>());
-  begin_block<BrightnessOffset>(estimate, settings.processes.of<BrightnessOffset>());
-  begin_block<CentroidWander>(estimate, settings.processes.of<CentroidWander>());
+  filter->initialize_relative(wrong, sigma.cwiseAbs2().asDiagonal(), SolutionStatus::kEstimated);
+  Estimate& estimate = filter->estimate();
+  initialize_block<BearingBias>(estimate, settings.processes.of<BearingBias>());
+  initialize_block<BrightnessOffset>(estimate, settings.processes.of<BrightnessOffset>());
+  initialize_block<CentroidWander>(estimate, settings.processes.of<CentroidWander>());
   UdFilter ud(mean_of(estimate), covariance_of(estimate));
 
   Noise noise(5);
@@ -166,11 +166,11 @@ TEST(UdReplay, ADayOfBearingsHasTheSameMeansAndSigmas) {
     target = truth.coast(target, 60.0);
     now = now + duration_of_seconds(60);
     const State before = mean_of(estimate);
-    trunk->advance_to(now, {});
+    filter->advance_to(now, {});
     Square phi = Square::Zero(), q = Square::Zero();
     phi.topLeftCorner<kOfHead, kOfHead>() =
-        trunk->last_motion().jacobian.topLeftCorner<kOfHead, kOfHead>().cast<Real>();
-    q.topLeftCorner<kOfHead, kOfHead>() = trunk->last_motion().noise.topLeftCorner<kOfHead, kOfHead>().cast<Real>();
+        filter->last_motion().jacobian.topLeftCorner<kOfHead, kOfHead>().cast<Real>();
+    q.topLeftCorner<kOfHead, kOfHead>() = filter->last_motion().noise.topLeftCorner<kOfHead, kOfHead>().cast<Real>();
     for (int k = kOfHead; k < kActive; ++k) {
       const double decay = process_of(k, settings).decay(60.0);
       phi(k, k) = static_cast<Real>(decay);
@@ -180,8 +180,8 @@ TEST(UdReplay, ADayOfBearingsHasTheSameMeansAndSigmas) {
     ud.propagate(after + phi * (ud.x - before), phi, q);
 
     const auto bearing = bearing_of(now, servicer, target, 12.0 * kArcsec, 12.0 * kArcsec * noise.normal2());
-    MeasurementBatch& batch = trunk->workspace();
-    ASSERT_EQ(sources::bearing_rows(*trunk, bearing, scene_sun(), {}, batch), Status::kOk);
+    MeasurementBatch& batch = filter->workspace();
+    ASSERT_EQ(sources::bearing_rows(*filter, bearing, scene_sun(), {}, batch), Status::kOk);
     const Eigen::Matrix<Real, 2, 2> lower =
         batch.noise.topLeftCorner<2, 2>().cast<Real>().llt().matrixL().toDenseMatrix();
     Eigen::Matrix<Real, 2, kActive> h;
@@ -194,7 +194,7 @@ TEST(UdReplay, ADayOfBearingsHasTheSameMeansAndSigmas) {
     Eigen::Matrix<Real, 2, 1> residual = batch.residual.head<2>().cast<Real>() - h * apart;
     lower.triangularView<Eigen::Lower>().solveInPlace(h);
     lower.triangularView<Eigen::Lower>().solveInPlace(residual);
-    ASSERT_TRUE(trunk->update({}, batch));
+    ASSERT_TRUE(filter->update({}, batch));
     ud.update(h.row(0).transpose(), residual(0), Real{1});
     // The second residual is that after the first update.
     const State moved = ud.x - (after + apart);
@@ -222,13 +222,14 @@ TEST(UdReplay, ADayOfBearingsHasTheSameMeansAndSigmas) {
 
 // A plain object without pointers: its bytes, saved and restored elsewhere, continue with the same bits.
 TEST(TrunkMemory, IsPlainAndWithinItsLimit) {
-  EXPECT_LE(sizeof(Trunk) + sizeof(sources::RecordQueue) + sizeof(sources::Platform), 450'000U);
-  const auto original = std::make_unique<Trunk>();
+  EXPECT_LE(sizeof(RelativeNavigationFilter) + sizeof(sources::RecordQueue) + sizeof(sources::Platform), 450'000U);
+  const auto original = std::make_unique<RelativeNavigationFilter>();
   original->advance_to(scene_start(), {});
   const orbit::CartesianState servicer = scene_servicer();
   original->set_states(servicer, scene_target(servicer, roe_of_metres(0.0, -500.0, 0.0, 50.0, 0.0, 50.0)));
-  const auto restored = std::make_unique<Trunk>();
-  std::memcpy(static_cast<void*>(restored.get()), static_cast<const void*>(original.get()), sizeof(Trunk));
+  const auto restored = std::make_unique<RelativeNavigationFilter>();
+  std::memcpy(static_cast<void*>(restored.get()), static_cast<const void*>(original.get()),
+              sizeof(RelativeNavigationFilter));
   original->advance_to(scene_start() + duration_of_seconds(1000), {});
   EXPECT_NE(original->roe(), restored->roe());
   restored->advance_to(scene_start() + duration_of_seconds(1000), {});
@@ -238,4 +239,4 @@ TEST(TrunkMemory, IsPlainAndWithinItsLimit) {
 }
 
 }  // namespace
-}  // namespace vbar::fsw::trunk
+}  // namespace vbar::fsw::filter

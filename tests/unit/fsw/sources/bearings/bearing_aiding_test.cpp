@@ -12,21 +12,21 @@ namespace vbar::fsw::sources {
 namespace {
 
 using namespace navigation::test;
+using filter::kAt;
+using filter::SolutionStatus;
 using navigation::Burn;
 using navigation::Propagation;
-using trunk::kAt;
-using trunk::RelativeKnowledge;
 
 constexpr double kSigma = 12.0 * kArcsec;
 
-trunk::TrunkSettings blocks() {
-  trunk::TrunkSettings settings;
+filter::FilterSettings blocks() {
+  filter::FilterSettings settings;
   settings.earth = scene_earth();
   settings.processes.of<CentroidWander>().sigma = 1e-3;
   return settings;
 }
 
-/// A pair under the on-board gravity, and a trunk that is aided by bearings.
+/// A pair under the on-board gravity, and a filter that is aided by bearings.
 class BearingAidingScene : public testing::Test {
  protected:
   BearingAidingScene() {
@@ -34,14 +34,14 @@ class BearingAidingScene : public testing::Test {
     settings.batch.bearings = 30;
     settings.model.centroid_noise_m = 0.0;
     aiding.configure(settings);
-    trunk->configure(blocks());
+    filter->configure(blocks());
     servicer = scene_servicer();
     target = scene_target(servicer, roe_of_metres(-300.0, -20000.0, 0.0, 500.0, 0.0, 500.0));
-    trunk->set_apriori(apriori(scene_target(servicer, roe_of_metres(-310.0, -20300.0, 80.0, 400.0, -60.0, 450.0))));
+    filter->set_apriori(apriori(scene_target(servicer, roe_of_metres(-310.0, -20300.0, 80.0, 400.0, -60.0, 450.0))));
   }
 
-  trunk::TargetApriori apriori(const orbit::CartesianState& state) const {
-    trunk::TargetApriori known;
+  filter::TargetApriori apriori(const orbit::CartesianState& state) const {
+    filter::TargetApriori known;
     known.time = now;
     known.target = state;
     known.sigma_a_roe_m << 30.0, 500.0, 100.0, 100.0, 100.0, 100.0;
@@ -63,19 +63,19 @@ class BearingAidingScene : public testing::Test {
   }
 
   void take_position() {
-    trunk->advance_to(now, burns);
-    trunk::OwnPosition position;
+    filter->advance_to(now, burns);
+    filter::AbsolutePosition position;
     position.position_eci = servicer.position_eci;
     for (int axis = 0; axis < 3; ++axis) position.position_eci(axis) += noise.normal();
-    trunk->take_own_position(position);
+    filter->update_absolute_orbit(position);
   }
 
   BearingEditStatus look(bool has_bearing = true) {
-    trunk->advance_to(now, burns);
+    filter->advance_to(now, burns);
     std::optional<navigation::BearingMeasurement> bearing;
     const Vector2 error = kSigma * noise.normal2();
     if (has_bearing) bearing = bearing_of(now, servicer, target, kSigma, error);
-    return aiding.process(now, bearing, scene_sun(), *trunk);
+    return aiding.process(now, bearing, scene_sun(), *filter);
   }
 
   /// Six positions and a bearing a minute; the scene stands at the time of the last bearing.
@@ -92,27 +92,27 @@ class BearingAidingScene : public testing::Test {
   }
 
   double error() const {
-    const auto estimated = orbit::relative_state_rtn(trunk->servicer(), trunk->target().value());
+    const auto estimated = orbit::relative_state_rtn(filter->servicer(), filter->target().value());
     const auto truth = orbit::relative_state_rtn(servicer, target);
     return (estimated.position_rtn - truth.position_rtn).norm();
   }
   double sigma() const {
-    return std::sqrt(trunk::covariance_rtn(trunk->estimate(), trunk->servicer()).topLeftCorner<3, 3>().trace());
+    return std::sqrt(filter::covariance_rtn(filter->estimate(), filter->servicer()).topLeftCorner<3, 3>().trace());
   }
-  bool valid() const { return trunk->knowledge() == RelativeKnowledge::kEstimated; }
+  bool valid() const { return filter->solution_status() == SolutionStatus::kEstimated; }
 
   GpsTime now = scene_start();
   orbit::CartesianState servicer, target;
   std::vector<Burn> burns;
   Noise noise{11};
-  std::unique_ptr<trunk::Trunk> trunk = std::make_unique<trunk::Trunk>();
+  std::unique_ptr<filter::RelativeNavigationFilter> filter = std::make_unique<filter::RelativeNavigationFilter>();
   BearingAiding aiding;
 };
 
 TEST_F(BearingAidingScene, AprioriThenBatchThenRows) {
-  EXPECT_FALSE(trunk->has_relative());
+  EXPECT_FALSE(filter->has_relative());
   EXPECT_EQ(watch(1, false), BearingEditStatus::kNone);
-  EXPECT_EQ(trunk->knowledge(), RelativeKnowledge::kApriori);
+  EXPECT_EQ(filter->solution_status(), SolutionStatus::kApriori);
   // The a-priori orbit: 500 m along track, and the servicer's velocity, known to some 0.1 m/s after a minute.
   EXPECT_GT(sigma(), 500.0);
   EXPECT_EQ(aiding.aid().state(), AidState::kWaiting);
@@ -143,7 +143,7 @@ TEST_F(BearingAidingScene, CoastsThroughAnEclipseAndASilentReceiver) {
   EXPECT_TRUE(valid());
   EXPECT_LT(error(), 4.0 * sigma());
   watch(30);
-  EXPECT_EQ(aiding.counters().refused, 0);
+  EXPECT_EQ(aiding.counters().rejected, 0);
   EXPECT_LT(error(), 4.0 * sigma());
 }
 
@@ -162,7 +162,7 @@ TEST_F(BearingAidingScene, AnUnreportedBurnIsRefusedThenFollowed) {
   watch(120);
   servicer = orbit::apply_impulse_rtn(servicer, {0.02, -0.05, 0.05});
   watch(240);
-  EXPECT_GT(aiding.counters().refused, 0);
+  EXPECT_GT(aiding.counters().rejected, 0);
   EXPECT_GT(aiding.counters().inflations + aiding.counters().restarts, 0);
   EXPECT_TRUE(valid());
   EXPECT_LT(error(), 4.0 * sigma());
@@ -171,26 +171,26 @@ TEST_F(BearingAidingScene, AnUnreportedBurnIsRefusedThenFollowed) {
 
 TEST_F(BearingAidingScene, ASecondAprioriDoesNotReplaceAnEstimate) {
   watch(60);
-  const Vector6 roe = trunk->roe();
-  const Matrix6 covariance = trunk->roe_covariance();
-  trunk->set_apriori(apriori(servicer));
-  EXPECT_EQ(trunk->roe(), roe);
-  EXPECT_EQ(trunk->roe_covariance(), covariance);
+  const Vector6 roe = filter->roe();
+  const Matrix6 covariance = filter->roe_covariance();
+  filter->set_apriori(apriori(servicer));
+  EXPECT_EQ(filter->roe(), roe);
+  EXPECT_EQ(filter->roe_covariance(), covariance);
   EXPECT_TRUE(valid());
 }
 
 TEST_F(BearingAidingScene, ABearingThatDoesNotFitChangesNothing) {
   watch(60);
-  const Vector6 roe = trunk->roe();
-  const Matrix6 covariance = trunk->roe_covariance();
+  const Vector6 roe = filter->roe();
+  const Matrix6 covariance = filter->roe_covariance();
   auto bearing = bearing_of(now, servicer, target, kSigma, {1e-2, 0.0});
-  EXPECT_EQ(aiding.process(now, bearing, scene_sun(), *trunk), BearingEditStatus::kRefused);
+  EXPECT_EQ(aiding.process(now, bearing, scene_sun(), *filter), BearingEditStatus::kRejected);
   bearing.direction_eci = -bearing.direction_eci;  // behind the camera
-  EXPECT_EQ(aiding.process(now, bearing, scene_sun(), *trunk), BearingEditStatus::kRefused);
+  EXPECT_EQ(aiding.process(now, bearing, scene_sun(), *filter), BearingEditStatus::kRejected);
   bearing.direction_eci.setConstant(NAN);
-  EXPECT_EQ(aiding.process(now, bearing, scene_sun(), *trunk), BearingEditStatus::kRefused);
-  EXPECT_EQ(trunk->roe(), roe);
-  EXPECT_EQ(trunk->roe_covariance(), covariance);
+  EXPECT_EQ(aiding.process(now, bearing, scene_sun(), *filter), BearingEditStatus::kRejected);
+  EXPECT_EQ(filter->roe(), roe);
+  EXPECT_EQ(filter->roe_covariance(), covariance);
 }
 
 /// Against Kalman's equations with full matrices, the sensitivities by differences of the geometry.
@@ -200,12 +200,12 @@ TEST(BearingRows, TheirUpdateIsKalmans) {
   Vector6 sigma_roe;
   sigma_roe << 2.0, 20.0, 3.0, 3.0, 3.0, 3.0;
   sigma_roe /= kA;
-  const auto trunk = std::make_unique<trunk::Trunk>();
-  trunk->configure(blocks());
-  trunk->advance_to(scene_start(), {});
-  trunk->set_states(servicer, scene_target(servicer, roe));
-  trunk->begin_relative(roe, sigma_roe.cwiseAbs2().asDiagonal(), RelativeKnowledge::kEstimated);
-  trunk::Estimate& estimate = trunk->estimate();
+  const auto filter = std::make_unique<filter::RelativeNavigationFilter>();
+  filter->configure(blocks());
+  filter->advance_to(scene_start(), {});
+  filter->set_states(servicer, scene_target(servicer, roe));
+  filter->initialize_relative(roe, sigma_roe.cwiseAbs2().asDiagonal(), SolutionStatus::kEstimated);
+  filter::Estimate& estimate = filter->estimate();
   estimate.reset(kAt<BrightnessOffset>, 0.1, 0.15 * 0.15);
   for (int axis = 0; axis < 2; ++axis) {
     estimate.reset(kAt<CentroidWander> + axis, 0.02 - 0.05 * axis, 0.3 * 0.3);
@@ -252,13 +252,13 @@ TEST(BearingRows, TheirUpdateIsKalmans) {
   const Small expected = mean - gain * shown(mean);
   const Eigen::Matrix<double, 11, 11> rest = p - gain * h * p;
 
-  trunk::MeasurementBatch& batch = trunk->workspace();
-  ASSERT_EQ(bearing_rows(*trunk, bearing, scene_sun(), model, batch), Status::kOk);
+  filter::MeasurementBatch& batch = filter->workspace();
+  ASSERT_EQ(bearing_rows(*filter, bearing, scene_sun(), model, batch), Status::kOk);
   estimation::predict_innovations(estimate, batch);
   const double nis = estimation::group_nis(batch, 0, 2);
   EXPECT_NEAR(nis, shown(mean).dot(s.inverse() * shown(mean)), 1e-3 * nis);
   EXPECT_NEAR(nis, estimation::joint_nis(batch), 1e-9 * nis);
-  ASSERT_TRUE(trunk->update(BearingAiding::kSource, batch));
+  ASSERT_TRUE(filter->update(BearingAiding::kSource, batch));
   for (int k = 0; k < 11; ++k) {
     const int i = kIndex[static_cast<std::size_t>(k)];
     // The bearing's curvature over a sigma is 1e-4 of its slope.

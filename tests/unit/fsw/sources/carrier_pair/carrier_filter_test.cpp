@@ -26,8 +26,8 @@ constexpr double kCycles = 15.0;     // of each channel against that before it
 // Orbit, antennas and prior of the ambiguities contribute 1e-4 of the variances below.
 constexpr double kTolerance = 5e-4;
 
-trunk::TrunkSettings known_orbit(double wander_sigma_m) {
-  trunk::TrunkSettings settings;
+filter::FilterSettings known_orbit(double wander_sigma_m) {
+  filter::FilterSettings settings;
   settings.earth = test::kEarth;
   settings.relative_orbit.acceleration = {.psd = 1e-24, .psd_min = 1e-24, .psd_max = 1e-24};
   settings.relative_orbit.along_track.sigma = 1e-13;
@@ -47,9 +47,9 @@ class KnownOrbit {
     const orbit::CartesianState servicer = navigation::test::servicer_start();
     estimator->set_states(servicer, servicer);
     // A micrometre: known, and far above rounding.
-    estimator->begin_relative(Vector6::Zero(), 1e-26 * Matrix6::Identity(), trunk::RelativeKnowledge::kEstimated);
-    filter.configure({.antenna_offset_sigma_m = 1e-9, .phase_centre_jitter_m = 1e-9});
-    filter.begin_blocks(*estimator);
+    estimator->initialize_relative(Vector6::Zero(), 1e-26 * Matrix6::Identity(), filter::SolutionStatus::kEstimated);
+    carrier.configure({.antenna_offset_sigma_m = 1e-9, .phase_centre_jitter_m = 1e-9});
+    carrier.activate_blocks(*estimator);
   }
 
   /// The next epoch, `dt_s` after the last; each phase is the ambiguity plus noise that no gate refuses.
@@ -77,7 +77,7 @@ class KnownOrbit {
       phases[k].push_back(o.phase_m);
     }
     times.push_back(seconds(time - GpsTime{}));
-    filter.take(epoch, AntennaPlatform{}, AntennaPlatform{}, *estimator);
+    carrier.process_epoch(epoch, AntennaPlatform{}, AntennaPlatform{}, *estimator);
   }
 
   /// All carriers are acquired again at `time`.
@@ -94,12 +94,12 @@ class KnownOrbit {
   }
   template <class Index>
   [[nodiscard]] double variance(const Index& index, std::size_t a, std::size_t b) const {
-    const trunk::Estimate& e = estimator->estimate();
+    const filter::Estimate& e = estimator->estimate();
     return e.variance(index(a)) - 2.0 * e.covariance(index(a), index(b)) + e.variance(index(b));
   }
 
-  std::unique_ptr<trunk::Trunk> estimator = std::make_unique<trunk::Trunk>();
-  CarrierFilter filter;
+  std::unique_ptr<filter::RelativeNavigationFilter> estimator = std::make_unique<filter::RelativeNavigationFilter>();
+  CarrierFilter carrier;
   GpsTime time = test::start_time();
   GpsTime locked_since = time - duration_of_seconds(1000);
   std::vector<double> times;
@@ -208,21 +208,21 @@ TEST(CarrierFilter, AReleasedChannelIsInactive) {
   KnownOrbit flight;
   for (int k = 0; k < 3; ++k) flight.take(10.0);
   const std::size_t last = kSatellites - 1;
-  EXPECT_FALSE(flight.estimator->estimate().is_idle(CarrierFilter::wander_index(last)));
+  EXPECT_FALSE(flight.estimator->estimate().is_inactive(CarrierFilter::wander_index(last)));
   for (int k = 0; k < 13; ++k) flight.take(10.0, last);
-  EXPECT_TRUE(flight.estimator->estimate().is_idle(CarrierFilter::wander_index(last)));
-  EXPECT_TRUE(flight.estimator->estimate().is_idle(CarrierFilter::ambiguity_index(last)));
-  EXPECT_FALSE(flight.estimator->estimate().is_idle(CarrierFilter::wander_index(0)));
+  EXPECT_TRUE(flight.estimator->estimate().is_inactive(CarrierFilter::wander_index(last)));
+  EXPECT_TRUE(flight.estimator->estimate().is_inactive(CarrierFilter::ambiguity_index(last)));
+  EXPECT_FALSE(flight.estimator->estimate().is_inactive(CarrierFilter::wander_index(0)));
   flight.filter.release(*flight.estimator, 0.05);
   for (std::size_t k = 0; k < kPhaseChannels; ++k)
-    EXPECT_TRUE(flight.estimator->estimate().is_idle(CarrierFilter::wander_index(k))) << k;
+    EXPECT_TRUE(flight.estimator->estimate().is_inactive(CarrierFilter::wander_index(k))) << k;
 }
 
 TEST(CarrierFilter, NoneIsEstimatedWithoutASigma) {
   KnownOrbit flight(0.0);
   for (int k = 0; k < 3; ++k) flight.take(10.0);
   for (std::size_t k = 0; k < kPhaseChannels; ++k) {
-    EXPECT_TRUE(flight.estimator->estimate().is_idle(CarrierFilter::wander_index(k))) << k;
+    EXPECT_TRUE(flight.estimator->estimate().is_inactive(CarrierFilter::wander_index(k))) << k;
     EXPECT_EQ(flight.estimator->estimate().mean(CarrierFilter::wander_index(k)), 0.0) << k;
   }
   // White noise of n phases.

@@ -81,7 +81,7 @@ TEST(DifferenceRows, AnUncertainOrbitIsSampled) {
 }
 
 TEST(DifferenceRows, ResidualsAndSensitivitiesAreDerivatives) {
-  test::TrunkPair pair(21);
+  test::FilterPair pair(21);
   pair.fly_trunk(6);
   const gnss::ObservationEpoch ours = pair.servicer.observe(pair.estimator->epoch(), pair.satellites, test::kEarth);
   const gnss::ObservationEpoch theirs = pair.target.observe(pair.estimator->epoch(), pair.satellites, test::kEarth);
@@ -93,7 +93,7 @@ TEST(DifferenceRows, ResidualsAndSensitivitiesAreDerivatives) {
   DifferenceRows rows, moved;
   ASSERT_EQ(rows.form(epoch, servicer, target, *pair.estimator), Status::kOk);
   ASSERT_GT(epoch.count, 10U);
-  using trunk::kAt;
+  using filter::kAt;
   const std::array<int, 11> components = {0,
                                           1,
                                           4,
@@ -131,7 +131,7 @@ TEST(DifferenceRows, ResidualsAndSensitivitiesAreDerivatives) {
 // The ionosphere delays codes and advances phases, by the square of the wavelength: 1.647 as much at L2 as at L1. Of a
 // target at the place of the servicer there is hardly a difference.
 TEST(DifferenceRows, IonosphereDelaysCodesAndAdvancesPhases) {
-  test::TrunkPair pair(21);
+  test::FilterPair pair(21);
   pair.fly_trunk(6);
   const gnss::ObservationEpoch ours = pair.servicer.observe(pair.estimator->epoch(), pair.satellites, test::kEarth);
   const gnss::ObservationEpoch theirs = pair.target.observe(pair.estimator->epoch(), pair.satellites, test::kEarth);
@@ -139,14 +139,14 @@ TEST(DifferenceRows, IonosphereDelaysCodesAndAdvancesPhases) {
   navigation::DifferentialEpoch epoch;
   navigation::form_differences(ours, theirs, pair.store, frame, epoch);
   const AntennaPlatform platform{pair.servicer.R_eci_body_at(epoch.time), pair.nominal_antenna_m, 0.0};
-  constexpr int kVertical = trunk::kAt<Ionosphere>;
+  constexpr int kVertical = filter::kAt<Ionosphere>;
   const auto chief = orbit::qns_from_cartesian(pair.estimator->servicer()).value();
-  trunk::Trunk& trunk = *pair.estimator;
+  filter::RelativeNavigationFilter& filter = *pair.estimator;
   DifferenceRows rows;
   for (const double distance_m : {0.0, 1000.0}) {
     const Vector6 roe = -distance_m / chief.a * Vector6::Unit(1);
-    trunk.begin_relative(roe, 1e-20 * Matrix6::Identity(), trunk::RelativeKnowledge::kEstimated);
-    ASSERT_EQ(rows.form(epoch, platform, platform, trunk), Status::kOk);
+    filter.initialize_relative(roe, 1e-20 * Matrix6::Identity(), filter::SolutionStatus::kEstimated);
+    ASSERT_EQ(rows.form(epoch, platform, platform, filter), Status::kOk);
     accuracy::Largest largest;
     for (std::size_t n = 0; n < epoch.count; ++n) {
       const double l1 = rows.code_sensitivity(n, gnss::Signal::kGpsL1)(kVertical);

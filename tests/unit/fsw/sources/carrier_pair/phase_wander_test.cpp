@@ -11,15 +11,15 @@
 namespace vbar::fsw::sources {
 namespace {
 
-using test::TrunkPair;
+using test::FilterPair;
 
 /// A pair whose receivers wander by `true_mm`, and a filter that is configured for `configured_mm`, over 60 s.
-TrunkPair wandering_pair(unsigned seed, double true_mm, double configured_mm) {
-  TrunkPair pair(seed, 3.2e-3 * std::sqrt(3.0), 1e-3);
+FilterPair wandering_pair(unsigned seed, double true_mm, double configured_mm) {
+  FilterPair pair(seed, 3.2e-3 * std::sqrt(3.0), 1e-3);
   for (navigation::test::SyntheticReceiver* receiver : {&pair.servicer, &pair.target})
     receiver->wander_sigma_m = 1e-3 * true_mm;
   // Of a single difference: two receivers.
-  pair.trunk_settings.processes.of<PhaseWander>() = {.sigma = std::sqrt(2.0) * 1e-3 * configured_mm, .time_s = 60.0};
+  pair.filter_settings.processes.of<PhaseWander>() = {.sigma = std::sqrt(2.0) * 1e-3 * configured_mm, .time_s = 60.0};
   pair.expect_no_acceleration();
   return pair;
 }
@@ -36,17 +36,17 @@ Statistics fly(int seeds, int epochs, double true_mm, double configured_mm) {
   Statistics all;
   double nis_count = 0.0;
   for (int seed = 201; seed < 201 + seeds; ++seed) {
-    TrunkPair pair = wandering_pair(static_cast<unsigned>(seed), true_mm, configured_mm);
+    FilterPair pair = wandering_pair(static_cast<unsigned>(seed), true_mm, configured_mm);
     bool integers_are_true = true;
     for (int k = 0; k < epochs; ++k) {
       pair.fly_trunk(1);
-      integers_are_true = integers_are_true && pair.trunk_integers_are_true();
+      integers_are_true = integers_are_true && pair.filter_integers_are_true();
       if (k < epochs / 2) continue;
       all.nis += pair.carrier->last_update().phase_nis;
       nis_count += pair.carrier->last_update().phases_used;
     }
-    const Vector6 error = pair.trunk_error();
-    all.nees += error.dot(pair.trunk_covariance().inverse() * error) / seeds;
+    const Vector6 error = pair.filter_error();
+    all.nees += error.dot(pair.filter_covariance().inverse() * error) / seeds;
     all.fixed += pair.carrier->is_fixed() ? 1 : 0;
     all.with_wrong_integers += integers_are_true ? 0 : 1;
     all.releases += pair.carrier->report().releases;

@@ -1,5 +1,5 @@
 #pragma once
-// The cooperating pair of tests/unit/fsw/navigation, whose observations the trunk receives through its aids.
+// The cooperating pair of tests/unit/fsw/navigation, whose observations the filter receives through its aids.
 
 #include <algorithm>
 #include <memory>
@@ -16,38 +16,38 @@ namespace vbar::fsw::sources::test {
 using navigation::test::kEarth;
 using navigation::test::start_time;
 
-/// Motion in the trunk's own gravity field, of degree 20.
+/// Motion in the filter's own gravity field, of degree 20.
 inline orbit::CartesianState fly_in_full_gravity(const orbit::CartesianState& start, double seconds) {
   const navigation::Propagation propagation(start_time(), kEarth, Vector3::UnitX());
   return propagation.coast(start, seconds);
 }
 
-struct TrunkPair : navigation::test::CooperatingPair {
-  explicit TrunkPair(unsigned seed, double offset_m = 0.0, double jitter_m = 0.0)
+struct FilterPair : navigation::test::CooperatingPair {
+  explicit FilterPair(unsigned seed, double offset_m = 0.0, double jitter_m = 0.0)
       : CooperatingPair(seed, offset_m, jitter_m) {
     servicer.motion = target.motion = fly_in_full_gravity;
-    trunk_settings.earth = kEarth;
+    filter_settings.earth = kEarth;
     // The empirical acceleration, and nothing else, drives the pair apart.
-    trunk_settings.relative_orbit.acceleration = {.psd = 1e-18, .psd_min = 1e-18, .psd_max = 1e-18};
-    trunk_settings.relative_orbit.along_track.sigma = 1e-12;
-    trunk_settings.relative_orbit.from_sun.sigma = 1e-12;
-    trunk_settings.burn_sigma_relative = 2e-3;
+    filter_settings.relative_orbit.acceleration = {.psd = 1e-18, .psd_min = 1e-18, .psd_max = 1e-18};
+    filter_settings.relative_orbit.along_track.sigma = 1e-12;
+    filter_settings.relative_orbit.from_sun.sigma = 1e-12;
+    filter_settings.burn_sigma_relative = 2e-3;
     carrier_settings.servicer_antenna_body_m = carrier_settings.target_antenna_body_m = nominal_antenna_m;
     for (const gnss::Ephemeris& ephemeris : satellites) {
       if (store.put(ephemeris) != Status::kOk) throw std::logic_error("an ephemeris of the test is not stored");
     }
-    begin_trunk();
+    begin_filter();
   }
 
   /// The truth is the filter's own model.
   void expect_no_acceleration() {
-    trunk_settings.relative_orbit.empirical.sigma = 1e-10;
-    begin_trunk();
+    filter_settings.relative_orbit.empirical.sigma = 1e-10;
+    begin_filter();
   }
 
-  void begin_trunk() {
-    estimator = std::make_unique<trunk::Trunk>();
-    estimator->configure(trunk_settings);
+  void begin_filter() {
+    estimator = std::make_unique<filter::RelativeNavigationFilter>();
+    estimator->configure(filter_settings);
     own = std::make_unique<OwnGnssAiding>();
     own->set_antenna(nominal_antenna_m);
     carrier = std::make_unique<CarrierAiding>();
@@ -88,8 +88,8 @@ struct TrunkPair : navigation::test::CooperatingPair {
     }
   }
 
-  /// Estimated minus true relative state in RTN at the trunk's epoch, m and m/s.
-  [[nodiscard]] Vector6 trunk_error() const {
+  /// Estimated minus true relative state in RTN at the filter's epoch, m and m/s.
+  [[nodiscard]] Vector6 filter_error() const {
     const auto estimated = estimator->target();
     if (!estimated.ok()) return Vector6::Constant(1e9);
     return error_of(estimator->servicer(), estimated.value(), estimator->epoch());
@@ -102,13 +102,13 @@ struct TrunkPair : navigation::test::CooperatingPair {
     error << estimate.position_rtn - truth.position_rtn, estimate.velocity_rtn - truth.velocity_rtn;
     return error;
   }
-  [[nodiscard]] double trunk_position_error() const { return trunk_error().head<3>().norm(); }
-  [[nodiscard]] Matrix6 trunk_covariance() const {
-    return trunk::covariance_rtn(estimator->estimate(), estimator->servicer());
+  [[nodiscard]] double filter_position_error() const { return filter_error().head<3>().norm(); }
+  [[nodiscard]] Matrix6 filter_covariance() const {
+    return filter::covariance_rtn(estimator->estimate(), estimator->servicer());
   }
 
-  /// Whether every integer held in the trunk is the true one.
-  [[nodiscard]] bool trunk_integers_are_true() const {
+  /// Whether every integer held in the filter is the true one.
+  [[nodiscard]] bool filter_integers_are_true() const {
     const PhaseChannels& channels = carrier->filter().channels();
     for (std::size_t a = 0; a < kPhaseChannels; ++a) {
       for (std::size_t b = 0; b < a; ++b) {
@@ -128,10 +128,10 @@ struct TrunkPair : navigation::test::CooperatingPair {
     return target.cycles[place] - servicer.cycles[place];
   }
 
-  trunk::TrunkSettings trunk_settings;
+  filter::FilterSettings filter_settings;
   CarrierSettings carrier_settings;
   navigation::EphemerisStore store;
-  std::unique_ptr<trunk::Trunk> estimator;
+  std::unique_ptr<filter::RelativeNavigationFilter> estimator;
   std::unique_ptr<OwnGnssAiding> own;
   std::unique_ptr<CarrierAiding> carrier;
 };

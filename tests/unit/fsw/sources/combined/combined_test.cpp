@@ -1,4 +1,4 @@
-// Several sources at one trunk: their information adds up, one that errs is suspended and leaves the orbit to the
+// Several sources at one filter: their information adds up, one that errs is suspended and leaves the orbit to the
 // other, and a change of sources changes no covariance.
 
 #include <memory>
@@ -31,19 +31,19 @@ Vector3 sun() {
 }
 
 /// The cooperating pair at a kilometre on a passively safe orbit, with a camera beside the receivers.
-struct CombinedPair : test::TrunkPair {
+struct CombinedPair : test::FilterPair {
   explicit CombinedPair(unsigned seed, double distance_m = 1000.0)
-      : TrunkPair(seed, 3.2e-3 * std::sqrt(3.0), 1e-3), noise(seed) {
+      : FilterPair(seed, 3.2e-3 * std::sqrt(3.0), 1e-3), noise(seed) {
     const auto chief = orbit::qns_from_cartesian(servicer.start).value();
     const Vector6 a_roe_m = distance_m * (Vector6() << 0.0, -1.0, 0.0, 0.06, 0.0, 0.06).finished();
     target.start = orbit::target_from_roe(chief, a_roe_m / chief.a).value();
-    trunk_settings.relative_orbit.from_sun.sigma = 1e-10;
-    trunk_settings.relative_orbit.along_track.sigma = 1e-10;
-    trunk_settings.relative_orbit.empirical.sigma = 1e-10;
-    trunk_settings.processes.of<CentroidWander>().sigma = 1e-4;
-    trunk_settings.processes.of<BrightnessOffset>().sigma = 1e-4;
-    trunk_settings.processes.of<BearingBias>().sigma = 1e-7;
-    begin_trunk();
+    filter_settings.relative_orbit.from_sun.sigma = 1e-10;
+    filter_settings.relative_orbit.along_track.sigma = 1e-10;
+    filter_settings.relative_orbit.empirical.sigma = 1e-10;
+    filter_settings.processes.of<CentroidWander>().sigma = 1e-4;
+    filter_settings.processes.of<BrightnessOffset>().sigma = 1e-4;
+    filter_settings.processes.of<BearingBias>().sigma = 1e-7;
+    begin_filter();
     set_centroid_noise(0.0);
   }
 
@@ -76,8 +76,8 @@ struct CombinedPair : test::TrunkPair {
 
   [[nodiscard]] double error_in_sigmas() const {
     if (!estimator->has_relative()) return 0.0;
-    const Matrix3 covariance = trunk_covariance().topLeftCorner<3, 3>();
-    return trunk_position_error() / std::sqrt(covariance.trace());
+    const Matrix3 covariance = filter_covariance().topLeftCorner<3, 3>();
+    return filter_position_error() / std::sqrt(covariance.trace());
   }
 
   Noise noise;
@@ -93,41 +93,41 @@ TEST(CombinedSources, InformationAddsUp) {
   pair.fly(1, false, false);  // two positions initialise the own orbit
   const GpsTime tag = pair.tag - duration_of_seconds(10);
   pair.tag = tag;
-  trunk::Trunk& start = *pair.estimator;
+  filter::RelativeNavigationFilter& start = *pair.estimator;
   const auto roe = orbit::roe_of_target(start.servicer(), pair.target.state_at(tag)).value();
   constexpr double kWide = 3.0 / 7087300.0;
-  start.begin_relative(roe, kWide * kWide * Matrix6::Identity(), trunk::RelativeKnowledge::kEstimated);
+  start.initialize_relative(roe, kWide * kWide * Matrix6::Identity(), filter::SolutionStatus::kEstimated);
 
-  const auto with_bearing = [&](trunk::Trunk& trunk) {
+  const auto with_bearing = [&](filter::RelativeNavigationFilter& filter) {
     auto seen = bearing_of(tag, pair.servicer.state_at(tag), pair.target.state_at(tag), kBearingSigma, Vector2::Zero());
     BearingModel model;
     model.centroid_noise_m = 0.0;
-    trunk::MeasurementBatch& batch = trunk.workspace();
-    ASSERT_EQ(bearing_rows(trunk, seen, sun(), model, batch), Status::kOk);
-    ASSERT_TRUE(trunk.update(BearingAiding::kSource, batch));
+    filter::MeasurementBatch& batch = filter.workspace();
+    ASSERT_EQ(bearing_rows(filter, seen, sun(), model, batch), Status::kOk);
+    ASSERT_TRUE(filter.update(BearingAiding::kSource, batch));
   };
   const auto ours = pair.servicer.observe(tag, pair.satellites, kEarth);
   const auto theirs = pair.target.observe(tag, pair.satellites, kEarth);
-  const auto with_codes = [&](trunk::Trunk& trunk) {
+  const auto with_codes = [&](filter::RelativeNavigationFilter& filter) {
     const auto frame = navigation::EarthFrame::at(tag, kEarth);
     auto differences = std::make_unique<navigation::DifferentialEpoch>();
     navigation::form_differences(ours, theirs, pair.store, frame, *differences);
-    CarrierFilter filter;
-    filter.begin_blocks(trunk);
+    CarrierFilter carrier;
+    carrier.activate_blocks(filter);
     const AntennaPlatform servicer{.R_eci_body = pair.servicer.R_eci_body_at(tag),
                                    .antenna_body_m = pair.nominal_antenna_m,
                                    .clock_m = gnss::kSpeedOfLight * pair.servicer.clock_s};
     const AntennaPlatform target{.R_eci_body = pair.target.R_eci_body_at(tag),
                                  .antenna_body_m = pair.nominal_antenna_m,
                                  .clock_m = gnss::kSpeedOfLight * pair.target.clock_s};
-    const CarrierUpdate update = filter.take(*differences, servicer, target, trunk);
+    const CarrierUpdate update = carrier.process_epoch(*differences, servicer, target, filter);
     ASSERT_GT(update.codes_used, 8);
   };
   const auto information = [&](bool bearing, bool codes) -> Matrix6 {
-    auto trunk = std::make_unique<trunk::Trunk>(start);
-    if (bearing) with_bearing(*trunk);
-    if (codes) with_codes(*trunk);
-    return trunk->roe_covariance().inverse();
+    auto filter = std::make_unique<filter::RelativeNavigationFilter>(start);
+    if (bearing) with_bearing(*filter);
+    if (codes) with_codes(*filter);
+    return filter->roe_covariance().inverse();
   };
   const Matrix6 prior = information(false, false);
   const Matrix6 sum = information(true, false) + information(false, true) - prior;
@@ -152,8 +152,8 @@ TEST(CombinedSources, OneInErrorIsSuspendedAndLeavesTheOrbitToTheOther) {
     without.fly(10, true, false);
     EXPECT_EQ(pair.camera.aid().state(), AidState::kSuspended) << seed;
     EXPECT_EQ(pair.camera.counters().inflations, 0) << seed;
-    const Vector6 apart = pair.trunk_error() - without.trunk_error();
-    const double distance = std::sqrt(apart.dot(without.trunk_covariance().inverse() * apart));
+    const Vector6 apart = pair.filter_error() - without.filter_error();
+    const double distance = std::sqrt(apart.dot(without.filter_covariance().inverse() * apart));
     EXPECT_LT(distance, 1.0) << seed;
     // The orbit stays, and bearings that agree again are used.
     pair.fly(60, true, true, 5.0 * kBearingSigma);
@@ -224,13 +224,13 @@ TEST(CombinedSources, CentroidNoiseIsMeasuredAgainstCarrierPhase) {
 /// The pair 12 m apart, with a camera whose images show keypoints besides: lit from abeam of the orbit.
 struct ClosePair : CombinedPair {
   explicit ClosePair(unsigned seed) : CombinedPair(seed, 12.0) {
-    trunk_settings.processes.of<CentroidWander>().sigma = 0.02;
-    trunk_settings.processes.of<BrightnessOffset>().sigma = 1e-3;
-    trunk_settings.attitude.inertia = navigation::inertia_of(3.0 * Matrix3::Identity()).value();
-    begin_trunk();
+    filter_settings.processes.of<CentroidWander>().sigma = 0.02;
+    filter_settings.processes.of<BrightnessOffset>().sigma = 1e-3;
+    filter_settings.attitude.inertia = navigation::inertia_of(3.0 * Matrix3::Identity()).value();
+    begin_filter();
     set_centroid_noise(0.05);  // of a resolved target
     KeypointAidingSettings settings;
-    settings.inertia = trunk_settings.attitude.inertia;
+    settings.inertia = filter_settings.attitude.inertia;
     keypoints.configure(settings);
   }
 
@@ -244,7 +244,7 @@ struct ClosePair : CombinedPair {
     error << 0.0, noise.normal2(), noise.normal2(), 0.0;
     const double sigma = sigma_m / chief.a;
     const Vector6 roe = orbit::roe_of_target(estimator->servicer(), target_beside_estimate()).value() + sigma * error;
-    estimator->begin_relative(roe, sigma * sigma * Matrix6::Identity(), trunk::RelativeKnowledge::kEstimated);
+    estimator->initialize_relative(roe, sigma * sigma * Matrix6::Identity(), filter::SolutionStatus::kEstimated);
     tag = tag + duration_of_seconds(10);
   }
 
@@ -333,7 +333,7 @@ TEST(CombinedSources, FourSourcesInTurnLeaveOneOrbit) {
     pair.fly_keypoints(60);
     EXPECT_EQ(pair.keypoint_status, KeypointEditStatus::kFilter) << seed;
     EXPECT_TRUE(pair.estimator->has_attitude()) << seed;
-    change([&] { pair.estimator->rest_attitude(); });
+    change([&] { pair.estimator->deactivate_attitude(); });
     pair.fly(60, true, false);
     EXPECT_TRUE(pair.carrier->is_fixed()) << seed;
     change([&] { pair.carrier->stop(pair.tag, *pair.estimator); });

@@ -1,5 +1,5 @@
 #pragma once
-// The trunk aided by keypoints on the last two legs of the rendezvous: orbits under all forces and a rigid body by the
+// The filter aided by keypoints on the last two legs of the rendezvous: orbits under all forces and a rigid body by the
 // truth of the twin, keypoints as a network might see them.
 
 #include <cmath>
@@ -19,8 +19,8 @@ namespace vbar::fsw::sources {
 
 inline constexpr double kDegree = M_PI / 180.0;
 
-inline trunk::TrunkSettings flight_blocks(const vbar::test::CloseFlight& flight) {
-  trunk::TrunkSettings blocks;
+inline filter::FilterSettings flight_blocks(const vbar::test::CloseFlight& flight) {
+  filter::FilterSettings blocks;
   blocks.earth = flight.earth;
   blocks.relative_orbit.acceleration = {.psd = 1e-13, .psd_min = 1e-14, .psd_max = 1e-11};
   blocks.attitude.inertia = vbar::test::close_flight_camera().inertia;
@@ -50,32 +50,32 @@ struct FlightError {
 class KeypointFlight {
  public:
   KeypointFlight(const vbar::test::CloseFlight& truth, const vbar::test::KeypointErrors& errors, double rate_deg_s,
-                 unsigned seed, const trunk::TrunkSettings& blocks, const KeypointAidingSettings& settings,
+                 unsigned seed, const filter::FilterSettings& blocks, const KeypointAidingSettings& settings,
                  double torque_nm = 0.0)
       : flight(truth),
         attitudes(vbar::test::tumble(flight, rate_deg_s, seed, torque_nm)),
         network(flight, attitudes, errors, seed),
         burns(network.known_burns()) {
-    trunk->configure(blocks);
+    filter->configure(blocks);
     aiding->configure(settings);
   }
 
   /// Mean ROE of preceding navigation, off by `error` (m), with its 1 sigma.
   void hand_over(const Vector6& offset, const Vector6& sigma) {
-    trunk::TargetApriori known;
-    known.kind = trunk::TargetApriori::Kind::kMeanRoe;
+    filter::TargetApriori known;
+    known.kind = filter::TargetApriori::Kind::kMeanRoe;
     known.time = flight.epochs[next].time;
     known.mean_a_roe_m = vbar::test::mean_a_roe_m(flight.epochs[next].servicer, flight.epochs[next].target) + offset;
     known.sigma_a_roe_m = sigma;
-    trunk->set_apriori(known);
+    filter->set_apriori(known);
   }
 
   KeypointEditStatus step(bool has_image = true, const Eigen::Quaterniond& turned = Eigen::Quaterniond::Identity()) {
     const vbar::test::MeasuredEpoch& measured = network.measure(next, turned);
-    trunk->advance_to(measured.time, burns);
-    trunk::OwnPosition position;
+    filter->advance_to(measured.time, burns);
+    filter::AbsolutePosition position;
     position.position_eci = measured.servicer_position_eci;
-    trunk->take_own_position(position);
+    filter->update_absolute_orbit(position);
     KeypointImage image;
     image.time = measured.time;
     image.camera = camera;
@@ -85,8 +85,8 @@ class KeypointFlight {
       image.keypoints = measured.keypoints;
       image.pnp = measured.pnp;
     }
-    const KeypointEditStatus status = aiding->process(image, *trunk);
-    if (trunk->has_relative()) error = error_of(turned);
+    const KeypointEditStatus status = aiding->process(image, *filter);
+    if (filter->has_relative()) error = error_of(turned);
     ++next;
     return status;
   }
@@ -94,10 +94,10 @@ class KeypointFlight {
   /// No image at all.
   void coast() {
     const vbar::test::MeasuredEpoch& measured = network.measure(next);
-    trunk->advance_to(measured.time, burns);
-    trunk::OwnPosition position;
+    filter->advance_to(measured.time, burns);
+    filter::AbsolutePosition position;
     position.position_eci = measured.servicer_position_eci;
-    trunk->take_own_position(position);
+    filter->update_absolute_orbit(position);
     aiding->check_age(measured.time);
     error = error_of(Eigen::Quaterniond::Identity());
     ++next;
@@ -106,31 +106,31 @@ class KeypointFlight {
   FlightError error_of(const Eigen::Quaterniond& turned) const {
     const vbar::test::CloseEpoch& truth = flight.epochs[next];
     FlightError result;
-    const auto estimated = orbit::relative_state_rtn(trunk->servicer(), trunk->target().value());
+    const auto estimated = orbit::relative_state_rtn(filter->servicer(), filter->target().value());
     result.position_m =
         (estimated.position_rtn - orbit::relative_state_rtn(truth.servicer, truth.target).position_rtn).norm();
-    const Vector6 roe_error = trunk->a_roe_m() - orbit::qns_from_cartesian(truth.servicer).value().a *
-                                                     orbit::roe_of_target(truth.servicer, truth.target).value();
-    result.roe_nees = roe_error.dot(math::Cholesky6(trunk->a_roe_covariance_m2()).solve(roe_error));
-    if (!trunk->has_attitude()) return result;
-    const navigation::AttitudeState& attitude = trunk->attitude().state();
+    const Vector6 roe_error = filter->a_roe_m() - orbit::qns_from_cartesian(truth.servicer).value().a *
+                                                      orbit::roe_of_target(truth.servicer, truth.target).value();
+    result.roe_nees = roe_error.dot(math::Cholesky6(filter->a_roe_covariance_m2()).solve(roe_error));
+    if (!filter->has_attitude()) return result;
+    const navigation::AttitudeState& attitude = filter->attitude().state();
     const Eigen::AngleAxisd between(attitude.q_eci_body.conjugate() * attitudes[next].q_eci_body * turned);
     const double angle = between.angle() > M_PI ? between.angle() - 2.0 * M_PI : between.angle();
     result.attitude = std::abs(angle);
     Vector6 attitude_error;
     attitude_error << angle * between.axis(), attitudes[next].rate_body - attitude.rate_body;
     result.attitude_nees =
-        attitude_error.dot(math::Cholesky6(trunk::attitude_covariance(trunk->estimate())).solve(attitude_error));
+        attitude_error.dot(math::Cholesky6(filter::attitude_covariance(filter->estimate())).solve(attitude_error));
     return result;
   }
 
-  double sigma_m() const { return std::sqrt(trunk->position_covariance_eci().trace()); }
+  double sigma_m() const { return std::sqrt(filter->position_covariance_eci().trace()); }
 
   const vbar::test::CloseFlight& flight;
   std::vector<navigation::AttitudeState> attitudes;
   vbar::test::SimulatedNetwork network;
   std::vector<navigation::Burn> burns;
-  std::unique_ptr<trunk::Trunk> trunk = std::make_unique<trunk::Trunk>();
+  std::unique_ptr<filter::RelativeNavigationFilter> filter = std::make_unique<filter::RelativeNavigationFilter>();
   std::unique_ptr<KeypointAiding> aiding = std::make_unique<KeypointAiding>();
   KeypointCamera camera = flight_camera();
   std::size_t next = 0;

@@ -12,7 +12,7 @@
 namespace vbar::fsw::sources {
 namespace {
 
-using trunk::RelativeKnowledge;
+using filter::SolutionStatus;
 using vbar::test::CloseFlight;
 using vbar::test::KeypointErrors;
 
@@ -33,7 +33,7 @@ struct Outcome {
   double attitude_nees = 0.0;
 };
 
-Outcome navigate(const trunk::TrunkSettings& blocks, const KeypointAidingSettings& settings,
+Outcome navigate(const filter::FilterSettings& blocks, const KeypointAidingSettings& settings,
                  const KeypointErrors& errors, double rate_deg_s, unsigned seed) {
   KeypointFlight flown(whole_flight(), errors, rate_deg_s, seed, blocks, settings);
   flown.hand_over(Vector6::Zero(), kHandOverSigma);
@@ -50,13 +50,13 @@ Outcome navigate(const trunk::TrunkSettings& blocks, const KeypointAidingSetting
   }
   EXPECT_GT(count, 1000) << seed;
   EXPECT_EQ(flown.aiding->counters().restarts, 0) << seed;
-  EXPECT_EQ(flown.trunk->failures(), 0) << seed;
+  EXPECT_EQ(flown.filter->failures(), 0) << seed;
   outcome.position_m /= count;
   outcome.attitude_deg /= count;
   return outcome;
 }
 
-Outcome mean_of_seeds(const trunk::TrunkSettings& blocks, const KeypointAidingSettings& settings,
+Outcome mean_of_seeds(const filter::FilterSettings& blocks, const KeypointAidingSettings& settings,
                       const KeypointErrors& errors, unsigned seeds) {
   Outcome mean;
   for (unsigned seed = 1; seed <= seeds; ++seed) {
@@ -76,7 +76,7 @@ constexpr double kMinNees = 22.0 / kSeeds;
 constexpr double kMaxNees = 88.0 / kSeeds;
 
 TEST(KeypointFlight, IsConsistentInWhiteNoise) {
-  trunk::TrunkSettings blocks = flight_blocks(whole_flight());
+  filter::FilterSettings blocks = flight_blocks(whole_flight());
   blocks.processes.of<KeypointCommon>() = {.correlated_share = 0.0,
                                            .shift_sigma_px = 0.05,
                                            .stretch_sigma = 1e-6,
@@ -176,7 +176,7 @@ TEST_F(KeypointFaults, AKnownRangeStartsTheAttitudeWithThreeImages) {
 TEST_F(KeypointFaults, AnUncertainRangeDelaysTheAttitude) {
   hand_over(0.5);
   for (int k = 0; k < 6; ++k) EXPECT_NE(flown.step(), KeypointEditStatus::kFilter) << k;
-  EXPECT_FALSE(flown.trunk->has_attitude());
+  EXPECT_FALSE(flown.filter->has_attitude());
   EXPECT_EQ(flown.aiding->aid().state(), AidState::kStarting);
   EXPECT_LE(steps_until_keypoints(120), 120);
   for (int k = 0; k < 10; ++k) flown.step();
@@ -187,9 +187,9 @@ TEST_F(KeypointFaults, AnUncertainRangeDelaysTheAttitude) {
 
 TEST_F(KeypointFaults, WithoutAnyOrbitPosesBeginIt) {
   for (int k = 0; k < 2; ++k) flown.step();
-  EXPECT_FALSE(flown.trunk->has_relative());
+  EXPECT_FALSE(flown.filter->has_relative());
   EXPECT_LE(steps_until_keypoints(200), 200);
-  EXPECT_EQ(flown.trunk->knowledge(), RelativeKnowledge::kEstimated);
+  EXPECT_EQ(flown.filter->solution_status(), SolutionStatus::kEstimated);
   for (int k = 0; k < 20; ++k) flown.step();
   EXPECT_LT(flown.error.position_m, 0.3);
   EXPECT_LT(flown.error.attitude, 3.0 * kDegree);
@@ -201,7 +201,7 @@ TEST_F(KeypointFaults, SilenceKeepsTheOrbit) {
   while (flown.next < 120) flown.step();
   for (int k = 0; k < 360; ++k) {
     flown.coast();
-    ASSERT_EQ(flown.trunk->knowledge(), RelativeKnowledge::kEstimated);
+    ASSERT_EQ(flown.filter->solution_status(), SolutionStatus::kEstimated);
   }
   EXPECT_EQ(flown.aiding->aid().state(), AidState::kSuspended);
   EXPECT_LT(flown.error.position_m, 4.0 * flown.sigma_m());
@@ -224,7 +224,7 @@ TEST_P(KeypointFlips, TheAttitudeIsInitialisedAgainAndTheOrbitKept) {
   EXPECT_LT(flown.error.attitude, 3.0 * kDegree);
   EXPECT_GE(flown.aiding->counters().attitudes_reset, 1);
   EXPECT_EQ(flown.aiding->counters().restarts, 0);
-  EXPECT_EQ(flown.trunk->knowledge(), RelativeKnowledge::kEstimated);
+  EXPECT_EQ(flown.filter->solution_status(), SolutionStatus::kEstimated);
   EXPECT_LT(flown.error.position_m, before + 0.05);  // of 3 sigma at this time
 }
 
@@ -284,7 +284,7 @@ TEST_F(KeypointFaults, AFalseBurnOf30CentimetresASecondIsSurvived) {
     flown.step();
     EXPECT_LT(flown.error.attitude, 3.0 * kDegree) << k;
   }
-  EXPECT_EQ(flown.trunk->knowledge(), RelativeKnowledge::kEstimated);
+  EXPECT_EQ(flown.filter->solution_status(), SolutionStatus::kEstimated);
   EXPECT_GE(flown.aiding->counters().inflations, 1);
   EXPECT_LT(flown.error.position_m, 0.3);
   EXPECT_LT(flown.error.attitude, 3.0 * kDegree);
@@ -294,8 +294,8 @@ TEST_F(KeypointFaults, ValuesThatAreNotFiniteChangeNothing) {
   hand_over();
   while (flown.next < 30) flown.step();
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const Vector6 roe = flown.trunk->roe();
-  const Matrix6 covariance = flown.trunk->roe_covariance();
+  const Vector6 roe = flown.filter->roe();
+  const Matrix6 covariance = flown.filter->roe_covariance();
   const vbar::test::MeasuredEpoch& measured = flown.network.measure(29);
   pose::Keypoints keypoints = *measured.keypoints;
   for (auto& keypoint : keypoints) keypoint.pixel.x() = nan;
@@ -308,16 +308,16 @@ TEST_F(KeypointFaults, ValuesThatAreNotFiniteChangeNothing) {
   image.pnp = measured.pnp;
   image.pnp->pose.position_camera_m.x() = nan;
   image.pnp->pose.R_camera_body.setConstant(nan);
-  EXPECT_EQ(flown.aiding->process(image, *flown.trunk), KeypointEditStatus::kNone);
+  EXPECT_EQ(flown.aiding->process(image, *flown.filter), KeypointEditStatus::kNone);
   for (auto& keypoint : keypoints) {
     keypoint.pixel = {400.0, 300.0};
     keypoint.covariance_px2.setZero();
   }
-  EXPECT_EQ(flown.aiding->process(image, *flown.trunk), KeypointEditStatus::kNone);
+  EXPECT_EQ(flown.aiding->process(image, *flown.filter), KeypointEditStatus::kNone);
   image.R_camera_eci->setConstant(nan);
-  EXPECT_EQ(flown.aiding->process(image, *flown.trunk), KeypointEditStatus::kNone);
-  EXPECT_EQ(flown.trunk->roe(), roe);
-  EXPECT_EQ(flown.trunk->roe_covariance(), covariance);
+  EXPECT_EQ(flown.aiding->process(image, *flown.filter), KeypointEditStatus::kNone);
+  EXPECT_EQ(flown.filter->roe(), roe);
+  EXPECT_EQ(flown.filter->roe_covariance(), covariance);
   for (int k = 0; k < 10; ++k) EXPECT_EQ(flown.step(), KeypointEditStatus::kFilter);
 }
 
@@ -332,7 +332,7 @@ TEST_F(KeypointFaults, ABacklitTargetStartsNoAttitude) {
   const Vector3 abeam = *flown.sun_eci;
   flown.sun_eci = to_target;
   for (int k = 0; k < 20; ++k) EXPECT_NE(flown.step(), KeypointEditStatus::kFilter);
-  EXPECT_FALSE(flown.trunk->has_attitude());
+  EXPECT_FALSE(flown.filter->has_attitude());
   flown.sun_eci = abeam;
   EXPECT_LE(steps_until_keypoints(10), 10);
 }
@@ -349,22 +349,22 @@ TEST_F(KeypointFaults, NoAttitudeStartsBeforeDusk) {
   ASSERT_TRUE(navigation::is_sunlit(target.position_eci + 20.0 * target.velocity_eci, *flown.sun_eci));
   ASSERT_FALSE(navigation::is_sunlit(target.position_eci + 120.0 * target.velocity_eci, *flown.sun_eci));
   for (int k = 0; k < 10; ++k) EXPECT_NE(flown.step(), KeypointEditStatus::kFilter);
-  EXPECT_FALSE(flown.trunk->has_attitude());
+  EXPECT_FALSE(flown.filter->has_attitude());
 }
 
 /// The network sees nothing of a lit target that should be in the image: the orbit stays, its covariance grows.
 TEST_F(KeypointFaults, AMissingTargetInflatesTheCovarianceAlone) {
   hand_over();
   while (flown.next < 60) flown.step();
-  const Vector6 roe = flown.trunk->roe();
+  const Vector6 roe = flown.filter->roe();
   const double before = flown.sigma_m();
   for (int k = 0; k < 13; ++k) flown.step(false);
   EXPECT_GT(flown.sigma_m(), 2.0 * before);
-  EXPECT_LT((flown.trunk->roe() - roe).norm() * 7.0e6, 5.0);
+  EXPECT_LT((flown.filter->roe() - roe).norm() * 7.0e6, 5.0);
   // Not without end: 10 % suffices to search the whole image.
   for (int k = 0; k < 100; ++k) flown.step(false);
   EXPECT_LT(flown.sigma_m(), 10.0);
-  EXPECT_EQ(flown.trunk->knowledge(), RelativeKnowledge::kEstimated);
+  EXPECT_EQ(flown.filter->solution_status(), SolutionStatus::kEstimated);
 }
 
 }  // namespace

@@ -12,22 +12,22 @@ namespace vbar::fsw::sources {
 namespace {
 
 using namespace navigation::test;
-using trunk::kAt;
+using filter::kAt;
 
 class KeypointRows : public testing::Test {
  protected:
   KeypointRows() {
-    trunk::TrunkSettings blocks;
+    filter::FilterSettings blocks;
     blocks.earth = scene_earth();
-    trunk->configure(blocks);
-    trunk->advance_to(scene_start(), {});
-    trunk->set_states(scene_servicer(), scene_target(scene_servicer(), roe));
-    trunk->begin_relative(roe, 1e-20 * Matrix6::Identity(), trunk::RelativeKnowledge::kEstimated);
+    filter->configure(blocks);
+    filter->advance_to(scene_start(), {});
+    filter->set_states(scene_servicer(), scene_target(scene_servicer(), roe));
+    filter->initialize_relative(roe, 1e-20 * Matrix6::Identity(), filter::SolutionStatus::kEstimated);
     navigation::AttitudeState attitude;
     attitude.q_eci_body = Eigen::Quaterniond(0.5, -0.1, 0.7, 0.4).normalized();
-    trunk->begin_attitude(attitude, 1e-10 * Matrix6::Identity());
-    trunk::begin_block<KeypointOrigin>(trunk->estimate(), {.sigma = 0.01});
-    trunk::begin_block<CameraMounts>(trunk->estimate(), {.sigma = 1e-4});
+    filter->initialize_attitude(attitude, 1e-10 * Matrix6::Identity());
+    filter::initialize_block<KeypointOrigin>(filter->estimate(), {.sigma = 0.01});
+    filter::initialize_block<CameraMounts>(filter->estimate(), {.sigma = 1e-4});
     q_eci_body = attitude.q_eci_body;
 
     const Vector3 z = (scene_target(scene_servicer(), roe).position_eci - scene_servicer().position_eci).normalized();
@@ -61,8 +61,8 @@ class KeypointRows : public testing::Test {
   }
 
   const Vector6 roe = roe_of_metres(0.0, -8.5, 1.0, 0.0, 1.0, 0.5);
-  std::unique_ptr<trunk::Trunk> trunk = std::make_unique<trunk::Trunk>();
-  trunk::MeasurementBatch& batch = trunk->workspace();
+  std::unique_ptr<filter::RelativeNavigationFilter> filter = std::make_unique<filter::RelativeNavigationFilter>();
+  filter::MeasurementBatch& batch = filter->workspace();
   Eigen::Quaterniond q_eci_body;
   CameraPose camera;
   KeypointModel model;
@@ -70,7 +70,7 @@ class KeypointRows : public testing::Test {
 };
 
 TEST_F(KeypointRows, SensitivitiesAreThoseOfTheGeometry) {
-  ASSERT_EQ(keypoint_rows(*trunk, keypoints, camera, model, batch), Status::kOk);
+  ASSERT_EQ(keypoint_rows(*filter, keypoints, camera, model, batch), Status::kOk);
   ASSERT_EQ(batch.used(), 22);
   // The mean of the sigma points differs from the central one by the curvature over 1e-5 rad: far below 1e-4 px.
   EXPECT_LT(batch.residual.norm(), 1e-4);
@@ -89,7 +89,7 @@ TEST_F(KeypointRows, SensitivitiesAreThoseOfTheGeometry) {
     expect_column(i, 1e-9, [&](std::size_t k, double d) { return seen(k, d * Vector6::Unit(i), none, none, flat); });
   }
   for (int i = 0; i < 3; ++i) {
-    expect_column(kAt<trunk::Turn> + i, 1e-4,
+    expect_column(kAt<filter::Turn> + i, 1e-4,
                   [&](std::size_t k, double d) { return seen(k, Vector6::Zero(), d * Vector3::Unit(i), none, flat); });
     expect_column(kAt<KeypointCommon> + KeypointCommon::kLastingTurn + i, 1e-4,
                   [&](std::size_t k, double d) { return seen(k, Vector6::Zero(), d * Vector3::Unit(i), none, flat); });
@@ -105,7 +105,7 @@ TEST_F(KeypointRows, SensitivitiesAreThoseOfTheGeometry) {
 /// A lasting error of the apparent size is that of one camera, larger for a small image.
 TEST_F(KeypointRows, EachCameraHasItsOwnLastingStretch) {
   model.lasting_stretch_scale = 3.0;
-  ASSERT_EQ(keypoint_rows(*trunk, keypoints, camera, model, batch), Status::kOk);
+  ASSERT_EQ(keypoint_rows(*filter, keypoints, camera, model, batch), Status::kOk);
   constexpr int kLasting = kAt<KeypointCommon> + KeypointCommon::kLastingStretch;
   for (int row = 0; row < batch.count(); ++row) {
     EXPECT_EQ(batch.sensitivity(kLasting, row), 0.0) << "of the other camera";
@@ -118,7 +118,7 @@ TEST_F(KeypointRows, EachCameraHasItsOwnLastingStretch) {
 
 /// The noise and the variance of the error states add up to the covariance of the network.
 TEST_F(KeypointRows, CorrelatedAndWhiteErrorsAddUpToTheCovariance) {
-  ASSERT_EQ(keypoint_rows(*trunk, keypoints, camera, model, batch), Status::kOk);
+  ASSERT_EQ(keypoint_rows(*filter, keypoints, camera, model, batch), Status::kOk);
   for (int k = 0; k < network::kKeypoints; ++k) {
     Matrix2 root;
     for (int axis = 0; axis < 2; ++axis) {
@@ -135,13 +135,13 @@ TEST_F(KeypointRows, InvalidKeypointsAreNotInUse) {
   keypoints[2].covariance_px2 << 1.0, 2.0, 2.0, 1.0;
   keypoints[3].is_usable = false;
   keypoints[4].covariance_px2.setConstant(std::numeric_limits<double>::infinity());
-  ASSERT_EQ(keypoint_rows(*trunk, keypoints, camera, model, batch), Status::kOk);
+  ASSERT_EQ(keypoint_rows(*filter, keypoints, camera, model, batch), Status::kOk);
   EXPECT_EQ(batch.used(), 12);
   camera.R_camera_eci = -camera.R_camera_eci;  // all behind the camera
-  const Status status = keypoint_rows(*trunk, keypoints, camera, model, batch);
+  const Status status = keypoint_rows(*filter, keypoints, camera, model, batch);
   EXPECT_TRUE(status != Status::kOk || batch.used() == 0);
-  trunk->rest_attitude();
-  EXPECT_EQ(keypoint_rows(*trunk, keypoints, camera, model, batch), Status::kNotReady);
+  filter->deactivate_attitude();
+  EXPECT_EQ(keypoint_rows(*filter, keypoints, camera, model, batch), Status::kNotReady);
 }
 
 View view_of(double angle, double range_m = 10.0) {
@@ -153,8 +153,8 @@ GpsTime after(int seconds) {
 }
 
 /// m = 1 + gain sum_j c_j exp(-d_j / angle), counts decaying with 2000 s.
-TEST(SeenViews, TheWeightIsThatOfTheFormula) {
-  SeenViews seen;
+TEST(ViewNovelty, TheWeightIsThatOfTheFormula) {
+  ViewNovelty seen;
   seen.configure({});
   seen.add(view_of(0.0), after(0));
   seen.add(view_of(0.05), after(5));  // merged
@@ -170,8 +170,8 @@ TEST(SeenViews, TheWeightIsThatOfTheFormula) {
               1e-6);
 }
 
-TEST(SeenViews, ItsMemoryIsBounded) {
-  SeenViews seen;
+TEST(ViewNovelty, ItsMemoryIsBounded) {
+  ViewNovelty seen;
   seen.configure({});
   for (int k = 0; k < 5000; ++k) seen.add(view_of(0.37 * k, 5.0 + k % 50), after(5 * k));
   const double scale = seen.scale(view_of(0.0), after(25000));

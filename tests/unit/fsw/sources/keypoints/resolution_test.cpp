@@ -30,20 +30,20 @@ class ResolutionTest : public testing::Test {
   /// `lateral_m` across the line of sight and `along_m` along it, 1 sigma.
   void place(double range_m, double lateral_m = 0.01, double along_m = 0.1) {
     const Vector6 roe = roe_of_metres(0.0, -range_m, 0.0, 0.0, 0.0, 0.0);
-    trunk_ = std::make_unique<trunk::Trunk>();
-    trunk::TrunkSettings blocks;
+    filter_ = std::make_unique<filter::RelativeNavigationFilter>();
+    filter::FilterSettings blocks;
     blocks.earth = scene_earth();
-    trunk_->configure(blocks);
-    trunk_->advance_to(scene_start(), {});
-    trunk_->set_states(scene_servicer(), scene_target(scene_servicer(), roe));
+    filter_->configure(blocks);
+    filter_->advance_to(scene_start(), {});
+    filter_->set_states(scene_servicer(), scene_target(scene_servicer(), roe));
     Matrix6 covariance = 1e-20 * Matrix6::Identity();
     const double a = scene_servicer().position_eci.norm();
     covariance(1, 1) = along_m * along_m / (a * a);
     covariance(4, 4) = covariance(5, 5) = lateral_m * lateral_m / (a * a);
-    trunk_->begin_relative(roe, covariance, trunk::RelativeKnowledge::kEstimated);
+    filter_->initialize_relative(roe, covariance, filter::SolutionStatus::kEstimated);
   }
-  Resolution far(Resolution before) { return resolution_of(kFar, *trunk_, before); }
-  std::unique_ptr<trunk::Trunk> trunk_ = std::make_unique<trunk::Trunk>();
+  Resolution far(Resolution before) { return resolution_of(kFar, *filter_, before); }
+  std::unique_ptr<filter::RelativeNavigationFilter> filter_ = std::make_unique<filter::RelativeNavigationFilter>();
 };
 
 // 2.3 * 0.75 m * 5972.7 px / 128 = 80.5 m.
@@ -73,7 +73,7 @@ TEST_F(ResolutionTest, EndsWhereTheTargetFillsTheImage) {
   EXPECT_EQ(far(Resolution::kResolved), Resolution::kResolved);
   place(17.5);
   EXPECT_EQ(far(Resolution::kResolved), Resolution::kTooLarge) << "1.5 m are 512 px of 500";
-  EXPECT_EQ(resolution_of(kClose, *trunk_, Resolution::kTooSmall), Resolution::kResolved);
+  EXPECT_EQ(resolution_of(kClose, *filter_, Resolution::kTooSmall), Resolution::kResolved);
   place(18.5);
   EXPECT_EQ(far(Resolution::kTooLarge), Resolution::kResolved);
 }
@@ -88,8 +88,8 @@ TEST_F(ResolutionTest, TheSizeOfASmallImageIsLessCertain) {
   EXPECT_NEAR(lasting_stretch_scale(1.1), 4.0, 1e-12);
 }
 
-TEST(ImageTurns, EveryOtherImageIsForBearingsWhileKeypointsDoNotAid) {
-  ImageTurns turns;
+TEST(ExposureScheduler, EveryOtherImageIsForBearingsWhileKeypointsDoNotAid) {
+  ExposureScheduler scheduler;
   EXPECT_FALSE(turns.is_bearing_due());
   for (int pair = 0; pair < 3; ++pair) {
     turns.take_keypoints(0.7, false);

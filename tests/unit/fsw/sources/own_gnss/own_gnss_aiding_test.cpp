@@ -17,18 +17,18 @@
 namespace vbar::fsw::sources {
 namespace {
 
+using test::FilterPair;
 using test::kEarth;
-using test::TrunkPair;
 
 TEST(OwnGnssAiding, ConvergesFromTheFirstTwoPositions) {
-  TrunkPair pair(31);
+  FilterPair pair(31);
   pair.fly_alone(1);
   EXPECT_EQ(pair.own->aid().state(), AidState::kStarting);
-  EXPECT_FALSE(pair.estimator->own_orbit().started());
+  EXPECT_FALSE(pair.estimator->absolute_orbit().started());
   pair.fly_alone(1);
   EXPECT_EQ(pair.own->aid().state(), AidState::kAiding);
   pair.fly_alone(200);
-  EXPECT_EQ(pair.own->counters().refused, 0);
+  EXPECT_EQ(pair.own->counters().rejected, 0);
   const orbit::CartesianState truth = pair.servicer.state_at(pair.estimator->epoch());
   // Code noise of 1.2 m, 14 satellites, half an hour: decimetres.
   EXPECT_LT((pair.estimator->servicer().position_eci - truth.position_eci).norm(), 1.0);
@@ -37,7 +37,7 @@ TEST(OwnGnssAiding, ConvergesFromTheFirstTwoPositions) {
 
 TEST(OwnGnssAiding, RefersThePositionToTheCentreOfMass) {
   for (const bool has_attitude : {true, false}) {
-    TrunkPair pair(32);
+    FilterPair pair(32);
     pair.servicer.code_sigma_m = 0.0;
     pair.servicer.antenna_body_m = Vector3(0.0, 0.0, 5.0);
     pair.own->set_antenna(pair.servicer.antenna_body_m);
@@ -61,7 +61,7 @@ TEST(OwnGnssAiding, RefersThePositionToTheCentreOfMass) {
 }
 
 TEST(OwnGnssAiding, CountsWhatItCannotUse) {
-  TrunkPair pair(33);
+  FilterPair pair(33);
   pair.fly_alone(20);
   const std::vector<gnss::Ephemeris> all = pair.satellites;
   pair.satellites.resize(6);
@@ -73,23 +73,23 @@ TEST(OwnGnssAiding, CountsWhatItCannotUse) {
   EXPECT_EQ(pair.own->aid().state(), AidState::kAiding);
   pair.servicer.start.position_eci += Vector3::Constant(500.0);
   pair.fly_alone(3);
-  EXPECT_EQ(pair.own->counters().refused, 3);
+  EXPECT_EQ(pair.own->counters().rejected, 3);
 }
 
 /// A burn that nobody reported: positions contradict the orbit, which is inflated and never discarded; the relative
 /// orbit is propagated with it all the time.
 TEST(OwnGnssAiding, AnUnknownBurnInflatesTheOrbitAndKeepsTheRelativeOne) {
-  TrunkPair pair(34);
+  FilterPair pair(34);
   pair.fly_trunk(60);
   const double before = pair.estimator->roe()(1);
   pair.servicer.start.position_eci += 300.0 * pair.servicer.start.velocity_eci.normalized();
   for (int k = 0; k < 40; ++k) {
     pair.fly_alone(1);
-    EXPECT_TRUE(pair.estimator->own_orbit().started()) << k;
+    EXPECT_TRUE(pair.estimator->absolute_orbit().started()) << k;
     EXPECT_TRUE(pair.estimator->has_relative()) << k;
   }
-  EXPECT_EQ(pair.own->counters().refused, trunk::OwnOrbit::kMaxRefused - 1);
-  EXPECT_EQ(pair.estimator->own_orbit().inflations(), 1);
+  EXPECT_EQ(pair.own->counters().rejected, filter::AbsoluteOrbitFilter::kMaxRejected - 1);
+  EXPECT_EQ(pair.estimator->absolute_orbit().inflations(), 1);
   EXPECT_EQ(pair.own->aid().state(), AidState::kAiding);
   const GpsTime time = pair.estimator->epoch();
   const double miss = (pair.estimator->servicer().position_eci - pair.servicer.state_at(time).position_eci).norm();
@@ -100,7 +100,7 @@ TEST(OwnGnssAiding, AnUnknownBurnInflatesTheOrbitAndKeepsTheRelativeOne) {
 // Normalised error squared of position and velocity of the own orbit. Truth: gravity of degree 60, Sun, Moon, tides,
 // relativity, and 24 orbits of different nodes and phases; positions with a Gauss-Markov error of 1.5 m over 1800 s and
 // white noise of 2 m.
-TEST(OwnOrbit, IsConsistentWithItsErrors) {
+TEST(AbsoluteOrbitFilter, IsConsistentWithItsErrors) {
   constexpr int kSeeds = vbar::test::share_under_sanitizers(24);
   constexpr double kSlow_m = 1.5, kSlowTime_s = 1800.0, kWhite_m = 2.0, kPeriod_s = 30.0;
   truth::TruthSettings settings;
@@ -110,15 +110,15 @@ TEST(OwnOrbit, IsConsistentWithItsErrors) {
   settings.data_directory = vbar::tests::source_path("data");
   truth::TruthModel model(settings);
   const auto now = model.data().earth_orientation->at(settings.epoch);
-  trunk::TrunkSettings trunk_settings;
-  trunk_settings.earth = {.epoch = settings.epoch,
-                          .ut1_minus_gps_s = now.ut1_minus_tai_s + 19.0,
-                          .ut1_rate = 0.0,
-                          .pole_x = now.pole_x,
-                          .pole_y = now.pole_y};
+  filter::FilterSettings filter_settings;
+  filter_settings.earth = {.epoch = settings.epoch,
+                           .ut1_minus_gps_s = now.ut1_minus_tai_s + 19.0,
+                           .ut1_rate = 0.0,
+                           .pole_x = now.pole_x,
+                           .pole_y = now.pole_y};
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
-  std::vector<std::unique_ptr<trunk::Trunk>> trunks;
+  std::vector<std::unique_ptr<filter::RelativeNavigationFilter>> filters;
   std::vector<Vector3> slow;
   for (int k = 0; k < kSeeds; ++k) {
     const double degree = M_PI / 180.0;
@@ -126,8 +126,8 @@ TEST(OwnOrbit, IsConsistentWithItsErrors) {
                          orbit::cartesian_from_qns(
                              {7087300.0 + 200.0 * k, 0.0015, 0.0, 98.18 * degree, 15.0 * k * degree, 47.0 * k * degree})
                              .value());
-    trunks.push_back(std::make_unique<trunk::Trunk>());
-    trunks.back()->configure(trunk_settings);
+    filters.push_back(std::make_unique<filter::RelativeNavigationFilter>());
+    filters.back()->configure(filter_settings);
     slow.push_back(kSlow_m * Vector3(normal(random), normal(random), normal(random)));
   }
   const double decay = std::exp(-kPeriod_s / kSlowTime_s);
@@ -146,17 +146,17 @@ TEST(OwnOrbit, IsConsistentWithItsErrors) {
       const orbit::CartesianState truth = model.state(index);
       slow[index] = decay * slow[index] +
                     std::sqrt(1.0 - decay * decay) * kSlow_m * Vector3(normal(random), normal(random), normal(random));
-      trunk::OwnPosition position;
+      filter::AbsolutePosition position;
       position.position_eci =
           truth.position_eci + slow[index] + kWhite_m * Vector3(normal(random), normal(random), normal(random));
       position.covariance_m2 = kWhite_m * kWhite_m * Matrix3::Identity();
-      trunks[index]->advance_to(tag, {});
-      trunks[index]->take_own_position(position);
+      filters[index]->advance_to(tag, {});
+      filters[index]->update_absolute_orbit(position);
       if (!is_evaluated) continue;
       Vector6 error;
-      error << trunks[index]->servicer().position_eci - truth.position_eci,
-          trunks[index]->servicer().velocity_eci - truth.velocity_eci;
-      const Matrix6 covariance = trunks[index]->own_orbit().covariance();
+      error << filters[index]->servicer().position_eci - truth.position_eci,
+          filters[index]->servicer().velocity_eci - truth.velocity_eci;
+      const Matrix6 covariance = filters[index]->absolute_orbit().covariance();
       nees += error.dot(covariance.inverse() * error) / kSeeds;
       error_square += error.cwiseAbs2() / kSeeds;
       variance += covariance.diagonal() / kSeeds;
