@@ -38,7 +38,7 @@ class Estimate {
   [[nodiscard]] double mean(int i) const { return mean_(i); }
   [[nodiscard]] double variance(int i) const { return matrix()(i, i); }
   [[nodiscard]] double covariance(int i, int j) const { return matrix()(i, j); }
-  /// Of the first M components.
+  /// Covariance of the first M components.
   template <int M>
   [[nodiscard]] Eigen::Matrix<double, M, M> head_covariance() const {
     return matrix().template topLeftCorner<M, M>();
@@ -164,7 +164,7 @@ class Estimate {
     }
   }
 
-  /// Of the first m components and all others; the others are symmetric among themselves.
+  /// Symmetrises the covariance of the first m components with all others; the others are symmetric among themselves.
   void symmetrise_head(int m) {
     Eigen::Map<Matrix> p = matrix();
     for (int c = 0; c < extent_; ++c) {
@@ -178,7 +178,7 @@ class Estimate {
 
   Vector mean_ = Vector::Zero();
   std::array<double, static_cast<std::size_t>(N* N)>
-      elements_{};  ///< of the covariance: Eigen limits the size of its own storage
+      elements_{};  ///< elements of the covariance: Eigen limits the size of its own storage
   int extent_ = 0;  ///< all components from here on are inactive
 };
 

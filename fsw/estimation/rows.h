@@ -114,7 +114,7 @@ template <int N, int kMax>
   return sum;
 }
 
-/// The same of one group: rows `first` to `first + size`, size 1 or 2.
+/// Normalised innovation squared of one group: rows `first` to `first + size`, size 1 or 2.
 template <int N, int kMax>
 [[nodiscard]] double group_nis(const MeasurementBatch<N, kMax>& batch, int first, int size) {
   const double a = batch.innovation(first, first);

@@ -48,7 +48,7 @@ class UnscentedTransform {
     return k > 0 && lower_((static_cast<int>(k) - 1) % M, (static_cast<int>(k) - 1) % M) == 0.0;
   }
 
-  /// Point 0 is the mean; 1 to M lie on one side of it, M + 1 to 2 M on the other.
+  /// Returns point k: 0 is the mean, 1 to M lie on one side of the mean, M + 1 to 2 M on the other.
   [[nodiscard]] Vector point(std::size_t k) const {
     if (k == 0) return mean_;
     const int side = static_cast<int>(k) - 1;

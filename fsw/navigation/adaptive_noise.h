@@ -32,8 +32,8 @@ class AdaptiveNoise {
     kOfLag,    ///< a filter that lags
     kOfEither  ///< or errors of the measurements that are themselves correlated: no reason for more noise
   };
-  /// Two innovations, each normalised by its standard deviation. After every kWindow pairs of neighbours the noise may
-  /// change.
+  /// Adds two innovations, each normalised by its standard deviation. After every kWindow pairs of neighbours the noise
+  /// may change.
   void add(const Vector2& normalised, Correlation correlation = Correlation::kOfLag);
 
   /// A burn or a gap: the next innovation has no neighbour, and the window restarts.

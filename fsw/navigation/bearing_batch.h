@@ -43,7 +43,7 @@ class BearingBatch {
     count_ = 0;
     burn_count_ = 0;
   }
-  /// In order of time. If the batch is full the older half is discarded.
+  /// Adds a bearing, in order of time. If the batch is full the older half is discarded.
   void add(const BearingMeasurement& bearing);
   /// A burn of the servicer. One before the first bearing is ignored; if the list is full the batch restarts.
   void add_burn(GpsTime time, const Vector3& dv_eci);

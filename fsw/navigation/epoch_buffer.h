@@ -33,7 +33,7 @@ class EpochBuffer {
 
   [[nodiscard]] const gnss::ObservationEpoch* oldest() const { return count_ == 0 ? nullptr : &at(0); }
   [[nodiscard]] std::size_t size() const { return count_; }
-  /// In order of tags.
+  /// Keeps an epoch, in order of tags.
   [[nodiscard]] const gnss::ObservationEpoch& operator[](std::size_t k) const { return at(k); }
   [[nodiscard]] const gnss::ObservationEpoch* find(GpsTime tag) const {
     for (std::size_t k = 0; k < count_; ++k) {

@@ -66,7 +66,7 @@ class PoseInitialiser {
 
   /// At the time of the last sample. kNotReady with too few samples, kDidNotConverge if too few agree.
   [[nodiscard]] Result<AttitudeStart> attitude() const;
-  /// The same, with respect to the servicer at the last sample.
+  /// Returns the orbit with respect to the servicer at the last sample.
   [[nodiscard]] Result<OrbitStart> orbit() const;
 
  private:

@@ -26,9 +26,9 @@ struct SignalSource {
   double clock_m = 0.0;  ///< c times the satellite clock's advance: to be added to the pseudorange and to the phase
 };
 
-/// Of the signal with `pseudorange_m` received when the receiver's clock showed `receiver_time`. kNotReady without an
-/// ephemeris of that satellite; kOutOfRange for a pseudorange outside that of navigation satellites (15,000 km to
-/// 60,000 km, clock error of the receiver included).
+/// Returns the source of the signal with `pseudorange_m` received when the receiver's clock showed `receiver_time`.
+/// kNotReady without an ephemeris of that satellite; kOutOfRange for a pseudorange outside that of navigation
+/// satellites (15,000 km to 60,000 km, clock error of the receiver included).
 Result<SignalSource> signal_source(gnss::SatelliteId satellite, double pseudorange_m, GpsTime receiver_time,
                                    const EphemerisStore& ephemerides, const EarthFrame& frame);
 

@@ -14,7 +14,8 @@ struct SinglePoint {
   Vector3 position_eci = Vector3::Zero();  ///< of the antenna at reception
   double clock_m = 0.0;                    ///< c times the receiver clock's advance over GPS time
   double sigma_m = 0.0;                    ///< 1 sigma of a position component, from the geometry and the residuals
-  /// Of the position, m^2, ECI: the inverse normal matrix of position, clock and offsets of the constellations.
+  /// Covariance of the position, m^2, ECI: the inverse normal matrix of position, clock and offsets of the
+  /// constellations.
   Matrix3 covariance_m2 = Matrix3::Zero();
   std::size_t used = 0;  ///< satellites
 };

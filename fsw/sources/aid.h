@@ -91,7 +91,7 @@ class Aid {
 
   void go_to(AidState next, GpsTime time) {
     if (next == state_) return;
-    // Of more transitions than fit, the last ones are merged into one.
+    // The last ones of more transitions than fit are merged into one.
     if (transition_count_ == kMaxTransitions) {
       transitions_.back().after = next;
       transitions_.back().time = time;

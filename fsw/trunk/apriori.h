@@ -35,9 +35,10 @@ class Apriori {
 
   [[nodiscard]] const TargetApriori& known() const { return known_; }
 
-  /// The elements with respect to the servicer at `time`. kNotReady before the time of the a-priori orbit, or (for ROE,
-  /// which are not propagated beyond a linear drift) more than ten minutes after it; kOutOfRange for an invalid orbit.
-  /// The covariance of an absolute orbit includes that of the servicer's own: 0.1 m/s of it cause 200 m of a * da.
+  /// Returns the elements with respect to the servicer at `time`. kNotReady before the time of the a-priori orbit, or
+  /// (for ROE, which are not propagated beyond a linear drift) more than ten minutes after it; kOutOfRange for an
+  /// invalid orbit. The covariance of an absolute orbit includes that of the servicer's orbit: 0.1 m/s of the latter
+  /// cause 200 m of a * da.
   Result<AprioriRoe> at(GpsTime time, const AbsoluteOrbitFilter& absolute_orbit, const orbit::EarthOrientation& earth);
 
  private:

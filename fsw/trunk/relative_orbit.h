@@ -3,8 +3,9 @@
 // accelerations that change them.
 //
 // Elements instead of a position because all but one of their uncertainties are constant, and because the servicer's
-// orbit then only defines the frame: an improved estimate of it shifts the target along and leaves the relative orbit
-// unchanged. Both orbits are propagated in gravity of degree 20 by the same integrator, so that neglected terms cancel.
+// orbit then only defines the frame: an improved estimate of that orbit shifts the target along and leaves the relative
+// orbit unchanged. Both orbits are propagated in gravity of degree 20 by the same integrator, so that neglected terms
+// cancel.
 
 #include "fsw/navigation/adaptive_noise.h"
 #include "fsw/navigation/propagation.h"
@@ -15,7 +16,8 @@
 namespace vbar::fsw::filter {
 
 struct RelativeOrbitSettings {
-  navigation::AdaptiveNoiseSettings acceleration;  ///< of all other effects, m^2/s^3, while `empirical` is inactive
+  navigation::AdaptiveNoiseSettings
+      acceleration;  ///< noise of all other effects, m^2/s^3, while `empirical` is inactive
   GaussMarkov along_track{.sigma = 1e-9, .time_s = 6000.0};  ///< m/s^2, differential drag
   GaussMarkov from_sun{.sigma = 3e-8, .time_s = 86400.0};    ///< m/s^2, differential radiation pressure in sunlight
   GaussMarkov empirical{.sigma = 3e-8, .time_s = 1500.0};    ///< m/s^2, per axis, while active
@@ -51,13 +53,13 @@ class RelativeOrbit {
   /// Propagates by sigma points through both orbits; false if an orbit is invalid.
   [[nodiscard]] bool advance(const Estimate& estimate, const OrbitStep& step, HeadMotion& motion) const;
 
-  /// A burn of the servicer (m/s, known to `sigma` per axis), `servicer` before it: the frame of the elements changes.
-  /// False, with nothing changed, if the orbit is invalid or the covariance is not positive definite.
+  /// Applies a burn of the servicer (m/s, known to `sigma` per axis), `servicer` before it: the frame of the elements
+  /// changes. Returns false, with nothing changed, if the orbit is invalid or the covariance is not positive definite.
   [[nodiscard]] bool impulse(Estimate& estimate, const orbit::CartesianState& servicer, const Vector3& dv_eci,
                              double sigma);
 
-  /// After contradicting measurements: as after an unknown burn of `velocity_sigma` (m/s, per axis), with the given
-  /// sigma of the mean longitude.
+  /// Inflates the covariance after contradicting measurements: as after an unknown burn of `velocity_sigma` (m/s, per
+  /// axis), with the given sigma of the mean longitude.
   void inflate(Estimate& estimate, const orbit::CartesianState& servicer, double velocity_sigma,
                double longitude_sigma);
 

@@ -2,14 +2,14 @@
 // The state of the relative estimator: blocks of the orbit and the attitude of the target, and those of the measurement
 // sources (fsw/sources/state_blocks.h).
 //
-//   x = [roe(6), push(2), emp(3) | turn(3), rate(3), body(2) | com(3), bearing_bias(2), mounts(4), sun_off(1),
-//        wander(2), kp_common(8), kp_err(22), range_bias(1), ant_s(3), ant_t(3), pcv(3), clk(1), cb(3), iono(3),
-//        amb(56), phase_wander(56)]
+//   x = [roe(6) -, push(2) m/s^2, emp(3) m/s^2 | turn(3) rad, rate(3) rad/s, body(2) - | com(3) m, bearing_bias(2) rad,
+//        mounts(4) rad, sun_off(1) m, wander(2) m, kp_common(8) px - rad, kp_err(22) -, range_bias(1) m, ant_s(3) m,
+//        ant_t(3) m, pcv(3) m, clk(1) m, cb(3) m, iono(3) m m/1000 km, amb(56) m, phase_wander(56) m]
 //
-// One estimate for all sensors: each block is inactive (variance zero, no influence, no cost behind the last active
+// One estimate serves all sensors: each block is inactive (variance zero, no influence, no cost behind the last active
 // one) until a source needs it. The blocks at the head are nonlinear and propagated by sigma points; all others enter
-// linearly. The servicer's own orbit is a separate estimate (own_orbit.h): a relative measurement observes it only by
-// its error divided by the semi-major axis, 3e-7 of the separation, so that the joint covariance is block-diagonal.
+// linearly. The servicer's absolute orbit is a separate estimate (own_orbit.h): a relative measurement observes it only
+// by its error divided by the semi-major axis, 3e-7 of the separation, so that the joint covariance is block-diagonal.
 
 #include "fsw/estimation/estimate.h"
 #include "fsw/estimation/gauss_markov.h"

@@ -14,7 +14,7 @@ struct TargetAttitudeSettings {
   /// 0.02 A m^2) whose direction in body axes changes within a minute. With a fifth of it, the NEES of attitude and
   /// rate (6 expected) was 24 to 43 for more than an hour of one of two flights.
   navigation::AdaptiveNoiseSettings angular_acceleration{.psd = 1e-11, .psd_min = 5e-12, .psd_max = 1e-10};
-  double inertia_ratio_sigma = 0.02;  ///< of the logarithms of the ratios, once they are activated
+  double inertia_ratio_sigma = 0.02;  ///< sigma of the logarithms of the ratios, once they are activated
 };
 
 class TargetAttitude {

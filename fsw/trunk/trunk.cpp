@@ -12,11 +12,11 @@ constexpr Duration kSegment = duration_of_seconds(600);
 constexpr Duration kAttitudeSegment = duration_of_seconds(20);
 constexpr int kMaxSegments = 10000;
 
-// Of states taken from ideal navigation: far below any sensor.
+// Sigmas of states taken from ideal navigation are far below those of any sensor.
 constexpr double kKnownSigma_m = 1e-5;
 constexpr double kKnownSigma_mps = 1e-8;
 
-// 1 sigma of the velocity of a converged own orbit is below this.
+// 1 sigma of the velocity of a converged absolute orbit is below this.
 constexpr double kConvergedVelocity = 0.02;  // m/s
 
 constexpr double square(double x) {
@@ -112,10 +112,10 @@ bool RelativeNavigationFilter::update_absolute_orbit(const AbsolutePosition& pos
   return is_accepted;
 }
 
-/// While the own orbit converges, its corrections move the target by as much in inertial axes, in which the sensors
-/// measure: constant elements would turn the relative position with the direction of the servicer's velocity, by ten
-/// centimetres at a kilometre. Afterwards the elements stay: they hold the drift of many orbits, and two orbits that
-/// are moved alike 70 km apart drift apart by metres.
+/// Keeps the inertial relative state: while the absolute orbit converges, its corrections move the target by as much in
+/// inertial axes, in which the sensors measure: constant elements would turn the relative position with the direction
+/// of the servicer's velocity, by ten centimetres at a kilometre. Afterwards the elements stay: they hold the drift of
+/// many orbits, and two orbits that are moved alike 70 km apart drift apart by metres.
 void RelativeNavigationFilter::keep_relative_state(const orbit::CartesianState& servicer_before,
                                                    const orbit::CartesianState& target_before) {
   const orbit::CartesianState now = servicer();
@@ -138,7 +138,7 @@ void RelativeNavigationFilter::set_states(const orbit::CartesianState& servicer,
 }
 
 /// An absolute a-priori orbit is referred to the servicer again with each of its positions, as long as nothing else is
-/// known: the servicer's own orbit is not accurate at first.
+/// known: the servicer's absolute orbit is not accurate at first.
 void RelativeNavigationFilter::refer_to_apriori() {
   if (!apriori_ || !absolute_orbit_.started()) return;
   const auto known = apriori_->at(epoch_, absolute_orbit_, settings_.earth);

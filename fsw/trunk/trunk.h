@@ -1,10 +1,19 @@
 #pragma once
-// The relative navigation filter: the servicer's own orbit and one relative estimate for all sensors, at one epoch.
+// The relative navigation filter estimates the target's orbit and attitude with respect to the servicer from all
+// sensors, beside the servicer's absolute orbit, at one epoch.
 //
-// Sources (fsw/sources) turn records of their sensors into batches of measurements; the filter propagates, is updated
-// by batches, and does not depend on which sensor they came from: the blocks of the sources are a list, whose members
-// carry their own process models. Activating or deactivating a block changes no other block; no source re-initialises
-// the own orbit.
+// State: x = [ROE (-), accelerations (m/s^2) | attitude error (rad), rate (rad/s), inertia ratios (-) | blocks of
+// sources] (components and units of all: state.h)
+//
+// Propagation: x <- f(x), P <- A P A' + Q, with A and Q of the head by sigma points (unscented.h: Julier, Uhlmann
+// 2004): both orbits in gravity of degree 20 (relative_orbit.h), the attitude as a rigid body (target_attitude.h:
+// USQUE, Crassidis and Markley 2003).
+//
+// Update: x <- x + P H' (H P H' + R)^-1 z, decorrelated by the Cholesky factor of R (fsw/estimation/rows.h).
+//
+// Measurement sources (fsw/sources) turn records of their sensors into batches. The filter does not depend on which
+// sensor they came from: the blocks of the sources are a list, whose members carry their own process models. Activating
+// or deactivating a block changes no other block. No source re-initialises the absolute orbit.
 
 #include <array>
 #include <bit>
@@ -23,18 +32,18 @@
 
 namespace vbar::fsw::filter {
 
-/// 1-sigma values of the initial states and of unmodelled effects.
+/// Holds 1-sigma values of the initial states and of unmodelled effects.
 struct FilterSettings {
   orbit::EarthOrientation earth;
   double burn_sigma = 2e-6;           ///< m/s, per axis of a burn
-  double burn_sigma_relative = 1e-3;  ///< of its size
+  double burn_sigma_relative = 1e-3;  ///< share of the size of a burn
   AbsoluteOrbitSettings absolute_orbit;
   RelativeOrbitSettings relative_orbit;
   TargetAttitudeSettings attitude;
-  estimation::BlockSettings<MeasurementBlocks> processes;  ///< of the blocks of measurement sources
+  estimation::BlockSettings<MeasurementBlocks> processes;  ///< settings of the blocks of measurement sources
 };
 
-/// How the relative orbit is known.
+/// States how the relative orbit is known.
 enum class SolutionStatus : std::uint8_t {
   kNone,
   kApriori,       ///< from the a-priori orbit alone: sufficient to point a camera, not to plan
@@ -42,7 +51,7 @@ enum class SolutionStatus : std::uint8_t {
   kEstimated,     ///< from measurements, or a-priori ROE of preceding navigation
 };
 
-/// A measurement source as the filter distinguishes it.
+/// Identifies a measurement source.
 struct MeasurementSource {
   std::int32_t bit = 0;         ///< navigation_configuration::kUse...
   bool confirms_orbit = false;  ///< its updates determine the relative orbit, which other sources then leave unchanged
@@ -65,7 +74,7 @@ class RelativeNavigationFilter {
   void configure(const FilterSettings& settings);
   [[nodiscard]] const FilterSettings& settings() const { return settings_; }
 
-  /// A new a-priori orbit of the target. It is used while nothing better is known.
+  /// Sets a new a-priori orbit of the target, which is used while nothing better is known.
   void set_apriori(const TargetApriori& apriori);
 
   /// Propagates both estimates to `time`, not before the epoch, including the burns of the servicer (in order of time)
@@ -78,16 +87,16 @@ class RelativeNavigationFilter {
   [[nodiscard]] std::span<const Impulse> impulses() const { return std::span(impulses_).first(impulse_count_); }
   static constexpr std::size_t kMaxImpulses = 32;
 
-  /// A single-point position at the epoch; false if it was rejected.
+  /// Processes a single-point position at the epoch; returns false if it was rejected.
   bool update_absolute_orbit(const AbsolutePosition& position);
   [[nodiscard]] const AbsoluteOrbitFilter& absolute_orbit() const { return absolute_orbit_; }
   [[nodiscard]] orbit::CartesianState servicer() const { return absolute_orbit_.state(); }
-  /// Both states at the epoch are known (ideal navigation): initialises both estimates with negligible covariance.
+  /// Initialises both estimates with negligible covariance: both states at the epoch are known (ideal navigation).
   void set_states(const orbit::CartesianState& servicer, const orbit::CartesianState& target);
 
   /// Initialises the relative orbit (dimensionless ROE); all blocks but the attitude's keep their state.
   void initialize_relative(const Vector6& roe, const Matrix6& covariance, SolutionStatus solution_status);
-  /// Contradicting measurements: the present estimate no longer suffices to plan.
+  /// Marks the present estimate as insufficient to plan, after contradicting measurements.
   void mark_inconsistent() {
     if (solution_status_ == SolutionStatus::kEstimated) solution_status_ = SolutionStatus::kInconsistent;
   }
@@ -95,7 +104,7 @@ class RelativeNavigationFilter {
     return absolute_orbit_.started() ? solution_status_ : SolutionStatus::kNone;
   }
   [[nodiscard]] bool has_relative() const { return solution_status() != SolutionStatus::kNone; }
-  /// kNotReady without a relative orbit.
+  /// Returns the target's state; kNotReady without a relative orbit.
   [[nodiscard]] Result<orbit::CartesianState> target() const;
 
   [[nodiscard]] Vector6 roe() const { return estimate_.mean().head<6>(); }
@@ -106,9 +115,10 @@ class RelativeNavigationFilter {
   /// Covariance of the target's position from the servicer, ECI axes, m^2; zero if there is none.
   [[nodiscard]] Matrix3 position_covariance_eci() const;
 
-  /// Attitude and rate of the target (TargetAttitude::initialize); the errors of keypoints are re-initialised.
+  /// Initialises attitude and rate of the target (TargetAttitude::initialize), and the blocks that are initialised with
+  /// them.
   void initialize_attitude(const navigation::AttitudeState& attitude, const Matrix6& covariance);
-  /// Deactivates the attitude, the errors of keypoints and the origin of the keypoints; the orbit stays.
+  /// Deactivates the attitude and the blocks that follow it; the orbit stays.
   void deactivate_attitude();
   [[nodiscard]] bool has_attitude() const { return TargetAttitude::is_known(estimate_); }
   [[nodiscard]] TargetAttitude& attitude() { return attitude_; }
@@ -146,16 +156,16 @@ class RelativeNavigationFilter {
   static constexpr std::size_t kMaxSources = 8;
   static constexpr Duration kConfirmation = duration_of_seconds(900);
 
-  /// After contradicting measurements: as after an unknown burn of `velocity_sigma`, m/s, with a sigma of the distance
-  /// along track, m.
+  /// Inflates the relative orbit after contradicting measurements, as after an unknown burn of `velocity_sigma`, m/s,
+  /// with a sigma of the distance along track, m.
   void inflate_relative(double velocity_sigma, double along_track_sigma_m);
-  /// The innovations of a source are larger than its covariances state, by this mean normalised square: the covariance
-  /// of the relative orbit is multiplied by it.
+  /// Multiplies the covariance of the relative orbit by `factor`, the mean normalised square by which the innovations
+  /// of a source are larger than its covariances state.
   void scale_relative_covariance(double factor);
-  /// The same of the servicer's own orbit as inflate_relative().
+  /// Inflates the servicer's absolute orbit, as inflate_relative() does the relative one.
   void inflate_absolute_orbit(double velocity_sigma);
 
-  /// Times that the relative estimate had to be discarded because it was not a covariance any more.
+  /// Number of times that the relative estimate had to be discarded because it was not a covariance any more.
   [[nodiscard]] int failures() const { return failures_; }
 
  private:

@@ -51,7 +51,7 @@ class BearingAiding {
   BearingEditStatus process(GpsTime time, const std::optional<navigation::BearingMeasurement>& bearing,
                             const Vector3& sun_eci, filter::RelativeNavigationFilter& filter);
 
-  /// Nothing was measured until `now`: the state follows the age of the last accepted bearing.
+  /// Notes that nothing was measured until `now`: the state follows the age of the last accepted bearing.
   void check_age(GpsTime now);
 
   /// Deactivates the own blocks; the orbit stays.
@@ -83,7 +83,7 @@ class BearingAiding {
   GpsTime last_accepted_;
   GpsTime last_processed_;
   int rejected_in_a_row_ = 0;
-  int rejected_in_excess_ = 0;  ///< of accepted ones, while others confirm the orbit
+  int rejected_in_excess_ = 0;  ///< rejections in excess of accepted ones, while others confirm the orbit
   int agreeing_in_a_row_ = 0;   ///< while contradicting
   std::size_t inflations_in_a_row_ = 0;
   double centroid_scale_ =

@@ -13,13 +13,14 @@ namespace vbar::fsw::sources {
 
 class BearingSource {
  public:
-  /// Of the servicer's body, by the stars of an image.
+  /// Attitude of the servicer's body, by the stars of an image.
   struct StarAttitude {
     GpsTime time;
     Matrix3 R_eci_body = Matrix3::Identity();
   };
   static constexpr std::int32_t kUse = BearingAiding::kSource.bit;
-  /// Of the first camera that is configured for bearings. A change re-initialises the front end, not the filter.
+  /// Takes the settings of the first camera that is configured for bearings. A change re-initialises the front end, not
+  /// the filter.
   bool configure(const Configuration& configuration);
   [[nodiscard]] Aid& aid() { return aiding_.aid(); }
   void collect(Context& context, RecordFiler records);
@@ -31,7 +32,7 @@ class BearingSource {
   [[nodiscard]] bool has_aided() const { return last_image_ && *last_image_ == aiding_.last_accepted(); }
   void watch(GpsTime now, filter::RelativeNavigationFilter& /*filter*/) { aiding_.check_age(now); }
   void stop(GpsTime now, filter::RelativeNavigationFilter& filter) { aiding_.stop(now, filter); }
-  /// By the image of the step, if enough of its stars were identified.
+  /// Attitude by the image of the step, if enough of its stars were identified.
   [[nodiscard]] std::optional<StarAttitude> star_attitude() const;
   /// Telemetry of the image of the step, if there was one.
   void report(const Telemetry& telemetry) const;

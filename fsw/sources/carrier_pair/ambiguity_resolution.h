@@ -12,7 +12,7 @@ namespace vbar::fsw::sources {
 
 struct AmbiguitySettings {
   bool enabled = true;
-  double min_success_rate = 0.999;  ///< of bootstrapping
+  double min_success_rate = 0.999;  ///< success rate of bootstrapping
   double min_ratio = 3.0;           ///< minimum ratio of second-best to best squared norm
   int min_epochs = 4;               ///< number of epochs tracked without a break before an ambiguity is considered
   // The integers are released when, in this number of consecutive epochs, the mean normalised innovation squared of the
@@ -24,7 +24,7 @@ struct AmbiguitySettings {
 
 struct AmbiguityReport {
   std::int32_t tracked = 0;  ///< channels with a carrier
-  std::int32_t fixed = 0;    ///< of them, held to integers
+  std::int32_t fixed = 0;    ///< ambiguities held to integers
   std::int32_t fixes = 0;    ///< number of decisions that held at least one integer
   std::int32_t releases = 0;
   gnss::RejectionReason rejection_reason = gnss::RejectionReason::kNone;  ///< of the last decision
@@ -40,7 +40,7 @@ class AmbiguityResolution {
   /// Releases all integers (CarrierFilter::release).
   void release(CarrierFilter& carrier, filter::RelativeNavigationFilter& filter, double position_sigma_m);
 
-  /// After each epoch processed.
+  /// Decides on the integers after each epoch processed.
   void update(CarrierFilter& carrier, filter::RelativeNavigationFilter& filter, const CarrierUpdate& epoch,
               const AmbiguitySettings& settings);
 

@@ -10,7 +10,7 @@
 namespace vbar::fsw::sources {
 namespace {
 
-// Of a baseline's normalised innovation squared: 5 sigma of three degrees of freedom.
+// Gate of a baseline's normalised innovation squared: 5 sigma of three degrees of freedom.
 constexpr double kBaselineGate = 25.0;
 
 constexpr double square(double x) {
@@ -73,7 +73,7 @@ bool CarrierAiding::process(const PairEpoch& pair, filter::RelativeNavigationFil
   return true;
 }
 
-/// After an update: whether the codes contradict the orbit; otherwise the integers.
+/// Judges, after an update, whether the codes contradict the orbit; otherwise the integers.
 void CarrierAiding::judge(GpsTime time, filter::RelativeNavigationFilter& filter) {
   const bool is_contradicted = last_update_.codes_rejected > last_update_.codes_used;
   contradicted_in_a_row_ = is_contradicted ? contradicted_in_a_row_ + 1 : 0;

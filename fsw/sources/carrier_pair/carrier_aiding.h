@@ -48,7 +48,7 @@ struct CarrierCounters {
   std::int32_t phases_rejected = 0;
   std::int32_t slips = 0;
   std::int32_t starts = 0;    ///< of the relative orbit, by a code baseline
-  std::int32_t restarts = 0;  ///< of them, after the first
+  std::int32_t restarts = 0;  ///< starts after the first
   std::int32_t failures = 0;  ///< the own blocks were discarded
 };
 
@@ -63,7 +63,7 @@ class CarrierAiding {
   /// Processes a pair; false if it was not used.
   bool process(const PairEpoch& pair, filter::RelativeNavigationFilter& filter);
 
-  /// At each step: suspends after kSilence without a pair, and releases the ambiguities after kKept.
+  /// Suspends, at each step, after kSilence without a pair, and releases the ambiguities after kKept.
   void watch(GpsTime now, filter::RelativeNavigationFilter& filter);
 
   /// Suspends the source, whose pairs will not be processed for a time: deactivates the states of an epoch and the
@@ -73,10 +73,10 @@ class CarrierAiding {
   /// Deactivates the own blocks; the orbit stays.
   void stop(GpsTime now, filter::RelativeNavigationFilter& filter);
 
-  /// An epoch of both receivers could not be used because the servicer's had no solution.
+  /// Counts an epoch of both receivers that could not be used because the servicer's had no solution.
   void count_no_solution() { ++counters_.no_solution; }
 
-  /// Another source has estimated the relative orbit since: it is not re-initialised by this one any more.
+  /// Notes that another source has estimated the relative orbit since: this one does not re-initialise it any more.
   void share_orbit() { owns_orbit_ = false; }
   [[nodiscard]] bool owns_orbit() const { return owns_orbit_; }
 
@@ -94,7 +94,7 @@ class CarrierAiding {
   /// An empirical acceleration that has decayed to its stationary distribution is deactivated.
   static constexpr Duration kEmpiricalKept = duration_of_seconds(7200);
   static constexpr Duration kFailedPause = duration_of_seconds(600);
-  /// Of the two baselines that initialise the orbit.
+  /// Time between the two baselines that initialise the orbit.
   static constexpr Duration kBaselinesApart = duration_of_seconds(60);
   static constexpr int kMinAgreeing = 3;
   /// The orbit is contradicted by most codes in this number of consecutive epochs.
@@ -108,7 +108,7 @@ class CarrierAiding {
   struct CodeBaseline {
     Vector3 relative_eci = Vector3::Zero();  ///< of the centres of mass at the tag, m
     double sigma_m = 0.0;                    ///< per axis
-    double noise_m = 0.0;                    ///< of it, what differs from epoch to epoch
+    double noise_m = 0.0;                    ///< the part of sigma_m that differs from epoch to epoch
   };
   struct FirstBaseline {
     GpsTime time;

@@ -15,7 +15,7 @@ constexpr double kNoGate = estimation::kNoGate;
 
 // The clock difference of single-point solutions is wrong by some metres; this sigma gives it negligible weight.
 constexpr double kClockSigma_m = 100.0;
-// Likewise for an ambiguity that is initialised from its own first measurement.
+// Sigma of an ambiguity that is initialised from its own first measurement.
 constexpr double kAmbiguitySigma_m = 30.0;
 
 // A phase that differs by this from the others of the epoch, in addition to the uncertainty of the filter, has slipped.
@@ -27,7 +27,7 @@ constexpr std::size_t kMinForMedian = 5;
 // in a few epochs. Phases of a wider orbit would update it along a wrong tangent, with the weight of a millimetre.
 constexpr double kMaxNonlinearity_m = 0.3e-3;
 
-// Of the baseline: below, differential delays are some hundredths of a millimetre.
+// Lengths of the baseline: below, differential delays are some hundredths of a millimetre.
 constexpr double kIonosphereFrom_m = 40.0;
 constexpr double kIonosphereUntil_m = 30.0;
 

@@ -42,14 +42,14 @@ struct CarrierUpdate {
 
 class CarrierFilter {
  public:
-  /// A change of the offsets' sigma discards what widen_antennas() has made of it.
+  /// Replaces the settings. A changed sigma of the offsets replaces what widen_antennas() has made of the former one.
   void configure(const CarrierFilterSettings& settings);
 
   /// Activates the antenna offsets, the code biases and the empirical acceleration, those of them that are inactive.
   void activate_blocks(filter::RelativeNavigationFilter& filter) const;
   /// Deactivates all blocks of the receivers and releases all channels; the orbit keeps its covariance.
   void deactivate_blocks(filter::RelativeNavigationFilter& filter);
-  /// Of an epoch: clock difference and jitter.
+  /// Deactivates the states of an epoch: clock difference and jitter.
   static void deactivate_epoch_states(filter::RelativeNavigationFilter& filter);
   /// Releases all channels, ambiguities and wander; the orbit keeps its covariance.
   void deactivate_channels(filter::RelativeNavigationFilter& filter);

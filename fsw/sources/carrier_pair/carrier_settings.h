@@ -13,7 +13,7 @@ namespace vbar::fsw::sources {
 /// kOutOfRange for an invalid telecommand.
 Result<CarrierSettings> carrier_settings(const carrier_configuration& configuration,
                                          const receiver_configuration& receiver);
-/// Of a single difference: of two independent channels.
+/// Returns the wander of a single difference, hence of two independent channels.
 [[nodiscard]] estimation::GaussMarkov phase_wander_of(const carrier_configuration& configuration);
 
 }  // namespace vbar::fsw::sources

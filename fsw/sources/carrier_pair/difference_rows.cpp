@@ -192,7 +192,7 @@ DifferenceRows::Sensitivity DifferenceRows::phase_sensitivity(std::size_t n, std
   return h;
 }
 
-/// Of the difference; proportional to the square of the wavelength.
+/// Group delay of the difference, proportional to the square of the wavelength.
 Vector3 DifferenceRows::group_delay(std::size_t n, gnss::Signal signal) const {
   const double ratio = gnss::wavelength(signal) / gnss::wavelength(gnss::Signal::kGpsL1);
   return ratio * ratio * rows_[n].group_delay;

@@ -225,7 +225,7 @@ bool KeypointAiding::is_far(const navigation::PoseSample& sample,
 
 KeypointEditStatus KeypointAiding::take_position(const KeypointImage& image, const CameraPose& camera,
                                                  filter::RelativeNavigationFilter& filter) {
-  // In penumbra poses are wrong alike.
+  // In penumbra all poses have the same error.
   if (!image.pnp || !is_finite(*image.pnp) || !light_.is_sunlit) return KeypointEditStatus::kNone;
   const navigation::PoseSample sample = sample_of(image, camera, filter);
   if (is_far(sample, filter)) {

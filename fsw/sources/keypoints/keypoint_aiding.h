@@ -22,7 +22,8 @@ struct KeypointAidingSettings {
   NoveltySettings novelty;
   navigation::PoseInitialiserSettings start;
   navigation::Inertia inertia;  ///< that of the filter's attitude
-  /// In addition to `start`: poses of fewer keypoints are used there only if their attitude is this accurate, rad.
+  /// Limit in addition to those of `start`: poses of fewer keypoints are used there only if their attitude is this
+  /// accurate, rad.
   int start_inliers = 8;
   double start_attitude_sigma = 0.05;
   double start_range_share = 0.007;    ///< an attitude is initialised where the range is known to this share, 1 sigma
@@ -88,15 +89,15 @@ class KeypointAiding {
   /// Processes an image; the filter stands at its time. Must be called for images without a target too.
   KeypointEditStatus process(const KeypointImage& image, filter::RelativeNavigationFilter& filter);
 
-  /// Nothing was measured until `now`: the state follows the age of the last accepted image.
+  /// Notes that nothing was measured until `now`: the state follows the age of the last accepted image.
   void check_age(GpsTime now);
 
   [[nodiscard]] const Aid& aid() const { return aid_; }
   [[nodiscard]] Aid& aid() { return aid_; }
-  /// Of the last image; empty if its keypoints were not processed.
+  /// Update by the last image; empty if its keypoints were not processed.
   [[nodiscard]] const KeypointsUpdate& last_update() const { return editing_.last_update(); }
   [[nodiscard]] GpsTime last_accepted() const { return last_accepted_; }
-  /// Of the images since forget_verdict(); empty if none was judged.
+  /// Verdict on the images since forget_verdict(); empty if none was judged.
   [[nodiscard]] const std::optional<NetworkVerdict>& network_verdict() const { return verdict_; }
   void forget_verdict() { verdict_.reset(); }
   [[nodiscard]] const KeypointCounters& counters() const { return counters_; }

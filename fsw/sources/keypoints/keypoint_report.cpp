@@ -72,7 +72,7 @@ void copy_estimate(const KeypointImage& image, const filter::RelativeNavigationF
 
 }  // namespace
 
-/// Of the filter after the image.
+/// Copies the estimate of the filter after the image.
 telemetry_pose KeypointSource::report_of(const KeypointImage& image, KeypointEditStatus edit_status, int tiles_missing,
                                          const filter::RelativeNavigationFilter& filter) const {
   const pose::PoseSighting& sighting = network_.sighting();

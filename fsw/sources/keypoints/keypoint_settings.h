@@ -13,7 +13,7 @@ namespace vbar::fsw::sources {
 /// An inertia of a rigid body, and keypoints that are neither nearly coincident nor collinear.
 [[nodiscard]] bool is_valid(const target_model& model);
 
-/// Of one camera.
+/// Returns the settings of one camera.
 struct KeypointCameraSettings {
   pose::PoseCameraSettings network;
   KeypointCamera camera;

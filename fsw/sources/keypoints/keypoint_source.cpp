@@ -161,7 +161,7 @@ void KeypointSource::stop(GpsTime now, filter::RelativeNavigationFilter& filter)
   aid().go_to(AidState::kOff, now);
 }
 
-/// By the star tracker, or the commanded attitude if it provides none.
+/// Returns the attitude of the star tracker, or the commanded attitude if it provides none.
 std::optional<Matrix3> KeypointSource::R_camera_eci_at(GpsTime time, const Matrix3& R_camera_body,
                                                        const Platform& platform,
                                                        const filter::RelativeNavigationFilter& filter) {

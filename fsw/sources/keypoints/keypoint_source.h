@@ -16,8 +16,8 @@ namespace vbar::fsw::sources {
 class KeypointSource {
  public:
   static constexpr std::int32_t kUse = KeypointEditing::kSource.bit;
-  /// Of all cameras that are configured for keypoints, with the model of the target. A change discards the poses
-  /// collected for initialisation; the filter stays.
+  /// Takes the settings of all cameras that are configured for keypoints, with the model of the target. A change
+  /// discards the poses collected for initialisation; the filter stays.
   bool configure(const Configuration& configuration);
   /// At most one image of each camera in a step.
   void collect(Context& context, RecordFiler records);
@@ -68,7 +68,8 @@ class KeypointSource {
   std::optional<Vector3> last_seen_rtn_;
 };
 
-/// Of the target's centre of mass with respect to the camera, in its axes, m. kNotReady without a target.
+/// Returns the position of the target's centre of mass with respect to the camera, in its axes, m. kNotReady without a
+/// target.
 Result<Vector3> target_position_camera(const KeypointCamera& camera, const Matrix3& R_camera_eci,
                                        const filter::RelativeNavigationFilter& filter);
 

@@ -38,8 +38,9 @@ struct ResolutionLimits {
                                        const filter::RelativeNavigationFilter& filter, Resolution before,
                                        const ResolutionLimits& limits = {});
 
-/// What a camera with two exposures takes next of a target that it resolves: keypoints, as long as they aid, or poses
-/// are being collected for an attitude. Otherwise every other image is for bearings, which a distant target still has.
+/// Decides what a camera with two exposures takes next of a target that it resolves: keypoints, as long as they aid, or
+/// poses are being collected for an attitude. Otherwise every other image is for bearings, which a distant target still
+/// has.
 class ExposureScheduler {
  public:
   /// An image for keypoints of this scale (empty: unknown); `serves`: they aid, or an attitude is about to begin.

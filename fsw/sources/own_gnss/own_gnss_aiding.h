@@ -1,5 +1,5 @@
 #pragma once
-// Single-point positions of the servicer's own receiver as an aid of the filter: they determine its own orbit.
+// Single-point positions of the servicer's own receiver as an aid of the filter: they determine its absolute orbit.
 
 #include <cstdint>
 #include <optional>
@@ -14,7 +14,7 @@ namespace vbar::fsw::sources {
 struct OwnGnssCounters {
   std::int32_t used = 0;
   std::int32_t no_solution = 0;  ///< epochs without a single-point solution
-  std::int32_t rejected = 0;     ///< positions that contradict the own orbit
+  std::int32_t rejected = 0;     ///< positions that contradict the absolute orbit
 };
 
 class OwnGnssAiding {
@@ -30,7 +30,7 @@ class OwnGnssAiding {
                                           const navigation::EarthFrame& frame,
                                           filter::RelativeNavigationFilter& filter);
 
-  /// At each step: suspends after kSilence without an accepted position.
+  /// Suspends, at each step, after kSilence without an accepted position.
   void watch(GpsTime now);
 
   [[nodiscard]] const OwnGnssCounters& counters() const { return counters_; }

@@ -41,9 +41,9 @@ class RangeAiding {
 
   void configure(const RangeSettings& settings) { settings_ = settings; }
 
-  /// A range in m; the filter stands at its time.
+  /// Processes a range in m; the filter stands at its time.
   RangeEditStatus process(double range_m, filter::RelativeNavigationFilter& filter);
-  /// Nothing was measured until `now`.
+  /// Suspends the source when nothing was measured for a time until `now`.
   void check_age(GpsTime now);
   /// Deactivates the bias: the source is not selected any more.
   void stop(GpsTime now, filter::RelativeNavigationFilter& filter);
@@ -52,7 +52,7 @@ class RangeAiding {
   [[nodiscard]] Aid& aid() { return aid_; }
   [[nodiscard]] const RangeCounters& counters() const { return counters_; }
   [[nodiscard]] GpsTime last_accepted() const { return last_accepted_; }
-  /// Of the last measurement: innovation, m, and its normalised square.
+  /// Innovation of the last measurement, m, and its normalised square.
   [[nodiscard]] double prefit_m() const { return prefit_m_; }
   [[nodiscard]] double nis() const { return nis_; }
 
