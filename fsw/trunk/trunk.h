@@ -16,7 +16,6 @@
 // or deactivating a block changes no other block. No source re-initialises the absolute orbit.
 
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -56,8 +55,11 @@ struct MeasurementSource {
   std::int32_t bit = 0;         ///< navigation_configuration::kUse...
   bool confirms_orbit = false;  ///< its updates determine the relative orbit, which other sources then leave unchanged
 
+  /// Index of the bit.
   [[nodiscard]] constexpr std::size_t place() const {
-    return static_cast<std::size_t>(std::countr_zero(static_cast<std::uint32_t>(bit)));
+    std::size_t place = 0;
+    while (place < 31 && bit >> place != 1) ++place;
+    return place;
   }
 };
 
