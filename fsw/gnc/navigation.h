@@ -55,9 +55,10 @@ class Navigation {
   [[nodiscard]] const NavigationState& state() const { return state_; }
 
   /// Telemetry and events of the sources.
-  void report(Outbox& outbox, std::int64_t step, GpsTime now, const Inbox& inbox) {
+  void report(Outbox& outbox, std::int64_t step, GpsTime now, const Inbox& inbox) const {
     trunk_.report(outbox, step, now, inbox);
   }
+  void forget_transitions() { trunk_.forget_transitions(); }
 
   /// Inconsistency, repeated restarts and contradictions of sources.
   void check_sources(GpsTime now, faults::FaultMonitor& faults) { trunk_.check_sources(now, faults); }

@@ -112,8 +112,9 @@ void Gnc::refuse(GpsTime now) {
   for (std::size_t k = 0; k < commands.size(); ++k) {
     if ((commands[k].value.clear & telemetry_health::kFaultClock) != 0) clock_.accept_next();
   }
-  report_health();
-  report_events();
+  report_health(outbox_);
+  report_events(outbox_);
+  faults_.forget_transitions();
   inbox_.clear(now_);
 }
 
