@@ -9,7 +9,7 @@ namespace vbar::fsw::gnc {
 
 /// Detects an estimate that was changed between two steps, or that the last step had to discard.
 void Gnc::check_state(GpsTime now, Integrity integrity) {
-  const int failures = navigation_.trunk().trunk().failures();
+  const int failures = measurements_.trunk().failures();
   faults_.check(now, {.fault = telemetry_health::kFaultState,
                       .is_detected = integrity != Integrity::kIntact || failures > failures_,
                       .argument = static_cast<double>(integrity)});

@@ -28,7 +28,7 @@ Status Gnc::step(GpsTime now) {
 }
 
 void Gnc::verify_state(GpsTime now) {
-  const Integrity integrity = navigation_.verify();
+  const Integrity integrity = measurements_.verify();
   if (integrity == Integrity::kLost) restart(now);
   check_state(now, integrity);
 }
@@ -52,14 +52,14 @@ void Gnc::manage() {
 
 void Gnc::navigate() {
   images_.update(now_, inbox_, faults_);
-  navigation_.update(now_, telecommands_, inbox_);
-  navigation_.check_sources(now_, faults_);
+  navigation_.update(now_, telecommands_, inbox_, measurements_);
+  measurements_.check_sources(now_, faults_);
   has_navigated_ = has_navigated_ || navigation_.state().valid;
   check_navigation();
 }
 
 void Gnc::assess() {
-  guidance_.assess(now_, navigation_, management_);
+  guidance_.assess(now_, navigation_, measurements_.trunk(), management_);
   assessment_.is_known = false;
   const std::optional<DriftSituation> situation = guidance_.drift_situation();
   if (situation && management_.safety() != nullptr) {
@@ -77,8 +77,7 @@ void Gnc::supervise() {
   const NavigationState& state = navigation_.state();
   const double range_m = state.valid ? (state.target.position_eci - state.servicer.position_eci).norm() : 0.0;
   feed_guard(guard_, inbox_, telecommands_, attitude_, range_m);
-  const TrunkNavigation& receivers = navigation_.trunk();
-  feed_guard_codes(guard_, receivers.gnss(), receivers.trunk().settings().earth, range_m);
+  feed_guard_codes(guard_, measurements_.gnss(), measurements_.trunk().settings().earth, range_m);
   check_verdicts(guard_.judge(now_), now_, faults_);
 }
 
@@ -120,7 +119,7 @@ void Gnc::command() {
 void Gnc::report(Outbox& outbox) const {
   telecommands_.report(outbox, step_, now_);
   report_navigation(outbox);
-  navigation_.report(outbox, step_, now_, inbox_);
+  measurements_.report(outbox, step_, now_, inbox_);
   report_control(outbox);
   report_safety(outbox);
   report_health(outbox);
@@ -128,9 +127,9 @@ void Gnc::report(Outbox& outbox) const {
 }
 
 void Gnc::end_step() {
-  navigation_.forget_transitions();
+  measurements_.forget_transitions();
   faults_.forget_transitions();
-  navigation_.seal();
+  measurements_.seal();
   inbox_.clear(now_ + inbox_.step_period());
   promised_period_ = inbox_.step_period();
   ++step_;

@@ -22,6 +22,7 @@
 #include "fsw/gnc/retreat_sequence.h"
 #include "fsw/gnc/step_clock.h"
 #include "fsw/gnc/telecommands.h"
+#include "fsw/gnc/trunk_navigation.h"
 
 namespace vbar::fsw::gnc {
 
@@ -29,7 +30,8 @@ namespace vbar::fsw::gnc {
 struct GncState {
   Telecommands telecommands_;
   Management management_;
-  Navigation navigation_;
+  TrunkNavigation measurements_;
+  NavigationSolution navigation_;
   Guidance guidance_;
   RetreatSequence retreat_;
   Assessment assessment_;

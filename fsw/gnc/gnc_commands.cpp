@@ -32,7 +32,7 @@ std::optional<sources::Pointing> Gnc::pointing_to_target() const {
     const Result<sources::Pointing> pointing = sources::pointing_at(now_, state.servicer, state.target);
     return pointing.ok() ? std::optional(pointing.value()) : std::nullopt;
   }
-  const auto& last_seen_rtn = navigation_.trunk().source<sources::KeypointSource>().last_seen_rtn();
+  const auto& last_seen_rtn = measurements_.source<sources::KeypointSource>().last_seen_rtn();
   if (!last_seen_rtn) return std::nullopt;
   return sources::Pointing{.time = now_, .boresight_rtn = *last_seen_rtn};
 }
@@ -41,7 +41,7 @@ std::optional<sources::Pointing> Gnc::pointing_to_target() const {
 void Gnc::point_camera() {
   const std::optional<sources::Pointing> pointing = pointing_to_target();
   if (!pointing) return;
-  navigation_.expect_pointing(*pointing);
+  measurements_.set_pointing(*pointing);
   pointing_command message{};
   copy(pointing->boresight_rtn, message.boresight_rtn);
   copy(pointing->boresight_rate_rtn, message.boresight_rate_rtn);
@@ -49,7 +49,7 @@ void Gnc::point_camera() {
 }
 
 void Gnc::command_exposures() {
-  const auto& keypoints = navigation_.trunk().source<sources::KeypointSource>();
+  const auto& keypoints = measurements_.source<sources::KeypointSource>();
   for (std::size_t camera = 0; camera < packets::kCameras; ++camera) {
     const std::optional<double> exposure_s = keypoints.wanted_exposure_s(camera);
     if (exposure_s) outbox_.send(now_, exposure_command{.exposure_s = *exposure_s}, static_cast<std::uint8_t>(camera));

@@ -77,7 +77,8 @@ Plan joined(const Plan& pending, const Plan& planned) {
 
 }  // namespace
 
-void Guidance::assess(GpsTime now, const Navigation& navigation, const Management& management) {
+void Guidance::assess(GpsTime now, const NavigationSolution& navigation, const trunk::Trunk& filter,
+                      const Management& management) {
   situation_known_ = false;
   const NavigationState& state = navigation.state();
   if (!state.valid) return;
@@ -93,16 +94,16 @@ void Guidance::assess(GpsTime now, const Navigation& navigation, const Managemen
   discard_past_burns(now);
   orbits_ = {now, servicer.value(), target.value()};
   report_.roe = orbit::roe_from_qns(orbits_.servicer, orbits_.target);
-  const Vector6 sigma_a_roe_m = navigation.sigma_a_roe_m();
+  const Vector6 sigma_a_roe_m = navigation.sigma_a_roe_m(filter);
   sigma_roe_ = sigma_a_roe_m / orbits_.servicer.a;
   position_bound_ = three_sigma(state.sigma_rtn, sigma_a_roe_m(0), orbits_.servicer);
-  covariance_m2_ = navigation.a_roe_covariance_m2();
+  covariance_m2_ = navigation.a_roe_covariance_m2(filter);
   if (management.safety() != nullptr) {
     safety_ = *management.safety();
   } else {
     safety_.reset();
   }
-  const trunk::TrunkSettings& settings = navigation.trunk().trunk().settings();
+  const trunk::TrunkSettings& settings = filter.settings();
   burn_uncertainty_ =
       safety_ ? safety::BurnUncertainty{settings.burn_sigma, settings.burn_sigma_relative} : safety::BurnUncertainty{};
   earliest_burn_ = now + Duration{configuration.compute_latency_ns};
@@ -125,7 +126,7 @@ std::optional<DriftSituation> Guidance::drift_situation() const {
   return DriftSituation{.orbits = orbits.value(), .bound = position_bound_, .covariance_m2 = covariance_m2_};
 }
 
-void Guidance::update(GpsTime now, Duration period, const Navigation& navigation, const Management& management,
+void Guidance::update(GpsTime now, Duration period, const NavigationSolution& navigation, const Management& management,
                       RetreatSequence& retreat, bool may_plan) {
   command_count_ = 0;
   report_.waypoint_index = -1;

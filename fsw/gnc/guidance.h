@@ -58,14 +58,15 @@ class Guidance {
   static constexpr std::size_t kMaxCommandsPerStep = 16;
 
   /// Mean orbits of both spacecraft and the passive safety of the current plan.
-  void assess(GpsTime now, const Navigation& navigation, const Management& management);
+  void assess(GpsTime now, const NavigationSolution& navigation, const trunk::Trunk& filter,
+              const Management& management);
 
   /// Nothing without a situation that is known.
   [[nodiscard]] std::optional<DriftSituation> drift_situation() const;
 
   /// One step: discards past burns, replans if due and necessary, and collects the burns to command. `period` is the
   /// time to the next step. `may_plan`: false if a fault forbids burns other than the retreat's.
-  void update(GpsTime now, Duration period, const Navigation& navigation, const Management& management,
+  void update(GpsTime now, Duration period, const NavigationSolution& navigation, const Management& management,
               RetreatSequence& retreat, bool may_plan);
 
   /// No plan could be flown at the last decision.
