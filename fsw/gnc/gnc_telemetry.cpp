@@ -44,9 +44,10 @@ void Gnc::report_control(Outbox& outbox) const {
   message.step = step_;
   message.mode = static_cast<std::int8_t>(management_.mode());
   message.active_solver = static_cast<std::int8_t>(guidance.active_solver);
-  message.koenig_damico_status = static_cast<std::int8_t>(guidance.koenig_damico);
-  message.closed_form_status = static_cast<std::int8_t>(guidance.closed_form);
-  message.least_squares_status = static_cast<std::int8_t>(guidance.least_squares);
+  control::any_solver([&]<class Entry>(std::size_t place) {
+    message.*Entry::kStatus = static_cast<std::int8_t>(guidance.status[place]);
+    return false;
+  });
   message.safety_status = static_cast<std::int8_t>(guidance.safety);
   message.waypoint_index = guidance.waypoint_index;
   copy(a * guidance.roe_desired, message.a_roe_desired_m);
