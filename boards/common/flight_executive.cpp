@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <optional>
 
 #include "fsw/packets/big_endian.h"
 #include "fsw/packets/messages.h"
@@ -119,7 +120,8 @@ void FlightExecutive::lose_session(std::uint32_t session, const char* error) {
 void FlightExecutive::begin_session(std::uint32_t session, std::span<const std::uint8_t> hello_payload) {
   has_session_ = true;
   session_ = session;
-  step_budget_ = budget_of(hello_payload);
+  const std::optional<Hello> hello = Hello::parse(hello_payload);
+  step_budget_ = budget_of(hello);
   if (platform_.session_begins != nullptr) platform_.session_begins(platform_.context, session_, step_budget_);
   counters_ = Counters{.received = 1};  // the hello itself
   has_answer_ = false;
@@ -129,25 +131,39 @@ void FlightExecutive::begin_session(std::uint32_t session, std::span<const std::
   snapshot_.clear();
   answer_ = fsw::link::BatchSender{};
   outbox_.clear();
-  const char* error = start_flight_software(hello_payload);
-  if (error == nullptr) error = open_receiver(hello_payload);
+  const char* const error = start(hello);
   can_fly_ = error == nullptr;
   hello_text_ = can_fly_ ? platform_.name : error;
 }
 
-std::uint64_t FlightExecutive::budget_of(std::span<const std::uint8_t> hello_payload) const {
-  if (platform_.counter == nullptr) return 0;  // nothing to compare it with
-  std::uint64_t budget = 0;
-  if (hello_payload.size() == fsw::link::kHelloWithBudgetBytes)
-    budget = fsw::packets::read_big_endian<std::uint64_t>(hello_payload, fsw::link::kHelloWithReceiverBytes);
-  return budget == 0 ? platform_.step_budget : budget;
+std::optional<Hello> Hello::parse(std::span<const std::uint8_t> payload) {
+  const bool has_budget = payload.size() == fsw::link::kHelloWithBudgetBytes;
+  const bool has_receiver = payload.size() == fsw::link::kHelloWithReceiverBytes;
+  if (!has_budget && !has_receiver && payload.size() != fsw::link::kHelloBytes) return std::nullopt;
+  Hello hello;
+  hello.spacecraft = payload[0];
+  if (!has_budget && !has_receiver) return hello;
+  const auto baud = fsw::packets::read_big_endian<std::uint32_t>(payload, fsw::link::kHelloBytes);
+  // Beside a budget, a rate of 0 states that no receiver is wired to the board.
+  if (baud != 0 || has_receiver) hello.receiver_baud = baud;
+  if (has_budget)
+    hello.step_budget = fsw::packets::read_big_endian<std::uint64_t>(payload, fsw::link::kHelloWithReceiverBytes);
+  return hello;
 }
 
-const char* FlightExecutive::start_flight_software(std::span<const std::uint8_t> hello_payload) {
-  if (hello_payload.size() != fsw::link::kHelloBytes && hello_payload.size() != fsw::link::kHelloWithReceiverBytes &&
-      hello_payload.size() != fsw::link::kHelloWithBudgetBytes)
-    return "error: a hello carries the spacecraft number, a receiver's rate in baud and the budget of a step";
-  spacecraft_ = hello_payload[0];
+std::uint64_t FlightExecutive::budget_of(const std::optional<Hello>& hello) const {
+  if (platform_.counter == nullptr) return 0;
+  return hello && hello->step_budget != 0 ? hello->step_budget : platform_.step_budget;
+}
+
+const char* FlightExecutive::start(const std::optional<Hello>& hello) {
+  if (!hello) return "error: a hello carries the spacecraft number, a receiver's rate in baud and the budget of a step";
+  const char* const error = start_flight_software(hello->spacecraft);
+  return error == nullptr ? open_receiver(hello->receiver_baud) : error;
+}
+
+const char* FlightExecutive::start_flight_software(std::uint8_t spacecraft) {
+  spacecraft_ = spacecraft;
   if (vbar_gnc_abi_version() != VBAR_GNC_ABI_VERSION) return "error: the flight software has another interface version";
   if (vbar_gnc_state_size() > gnc_state_.size())
     return "error: the flight software's state is larger than the board allows";
@@ -160,13 +176,11 @@ const char* FlightExecutive::start_flight_software(std::span<const std::uint8_t>
   return nullptr;
 }
 
-const char* FlightExecutive::open_receiver(std::span<const std::uint8_t> hello_payload) {
+const char* FlightExecutive::open_receiver(const std::optional<std::uint32_t>& baud) {
   close_receiver();
-  if (hello_payload.size() < fsw::link::kHelloWithReceiverBytes) return nullptr;
-  const auto baud = fsw::packets::read_big_endian<std::uint32_t>(hello_payload, fsw::link::kHelloBytes);
-  if (baud == 0 && hello_payload.size() == fsw::link::kHelloWithBudgetBytes) return nullptr;
-  const bool is_possible = baud != 0 && platform_.open_receiver != nullptr && platform_.read_receiver != nullptr;
-  if (!is_possible || !platform_.open_receiver(platform_.context, baud))
+  if (!baud) return nullptr;
+  const bool is_possible = *baud != 0 && platform_.open_receiver != nullptr && platform_.read_receiver != nullptr;
+  if (!is_possible || !platform_.open_receiver(platform_.context, *baud))
     return "error: no line to a receiver at this rate, or the line is the link to the host";
   receiver_.open(spacecraft_);
   return nullptr;

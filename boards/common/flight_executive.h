@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "boards/common/outbox.h"
@@ -49,6 +50,16 @@ inline constexpr std::size_t kGncStateBytes = std::size_t{8} * 1024 * 1024;
 inline constexpr std::size_t kGncStateAlignment = 64;
 
 enum class Activity : std::uint8_t { kIdle, kStepped, kGoodbye };
+
+/// The payload of a kHello (fsw/link/frame.h).
+struct Hello {
+  std::uint8_t spacecraft = 0;
+  std::optional<std::uint32_t> receiver_baud;  ///< of the line on which a receiver is wired to the board
+  std::uint64_t step_budget = 0;               ///< in units of Platform::counter; 0: that of the board
+
+  /// Returns nothing for a payload whose size is not that of a hello.
+  static std::optional<Hello> parse(std::span<const std::uint8_t> payload);
+};
 
 /// One per image, in static memory (it is large). Not thread-safe, not re-entrant, and it stays where it is: the flight
 /// software is given its address.
@@ -102,11 +113,14 @@ class FlightExecutive {
   void on_poll(const fsw::link::FrameHeader& header);
 
   void begin_session(std::uint32_t session, std::span<const std::uint8_t> hello_payload);
-  [[nodiscard]] std::uint64_t budget_of(std::span<const std::uint8_t> hello_payload) const;
-  /// Null if the flight software was constructed, otherwise the text for the host.
-  const char* start_flight_software(std::span<const std::uint8_t> hello_payload);
-  /// Null if the session has the receiver that its hello asks for, or asks for none, otherwise the text for the host.
-  const char* open_receiver(std::span<const std::uint8_t> hello_payload);
+  /// Returns the budget of a step that a hello states, or else the board's; 0 without a counter to compare it with.
+  [[nodiscard]] std::uint64_t budget_of(const std::optional<Hello>& hello) const;
+  /// Starts what the hello asks for. Returns null, or else the text for the host.
+  const char* start(const std::optional<Hello>& hello);
+  /// Constructs the flight software. Returns null, or else the text for the host.
+  const char* start_flight_software(std::uint8_t spacecraft);
+  /// Opens the receiver's line, if the hello asks for it. Returns null, or else the text for the host.
+  const char* open_receiver(const std::optional<std::uint32_t>& baud);
   void close_receiver();
   void on_receiver_poll();
   void on_snapshot_poll(const fsw::link::FrameView& frame);

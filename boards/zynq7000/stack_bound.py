@@ -27,7 +27,7 @@ INDIRECT = [
     (r"^vbar_interrupt$", [r"^vbar::boards::zynq7000::(Uart|Ethernet)::on_interrupt\(", r"^vbar::boards::zynq7000::\(anonymous namespace\)::on_expiry\(", r"^vbar::boards::zynq7000::\(anonymous namespace\)::start_wake_timer\(\)::.*_FUN\("]),
     # packets to the sink
     (r"^void vbar::fsw::gnc::Outbox::send<", SINK),
-    (r"^vbar::fsw::gnc::Gnc::(report_|point_|command_|report\()", SINK),
+    (r"^vbar::fsw::gnc::Gnc::(report_|point_|command_|report\(|command\()", SINK),
     (r"^vbar::fsw::sources::\w+::report\w*\(", SINK),
     # the platform of the executive
     (r"^vbar::boards::FlightExecutive::", [BOARD + r"(open_receiver|read_receiver|send|session_begins|step_begins|step_ends)\(",

@@ -255,7 +255,7 @@ Burn* burn_at(Plan& plan, GpsTime time) {
 // In order of time; burns of the same instant are merged.
 Plan servicer_plan(const Model& model, const DeputyBurns& burns) {
   Plan plan;
-  plan.solver = Solver::kClosedForm;
+  plan.solver = ClosedForm::kId;
   for (std::size_t k = 0; k < burns.count; ++k) {
     const Burn burn{model.problem.start + nearest_duration(burns.offsets[k]), -burns.dv[k]};
     if (Burn* same = burn_at(plan, burn.time)) {

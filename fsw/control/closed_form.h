@@ -7,6 +7,12 @@
 // over the grid and half orbits from both ends of the window finds four; the normal impulse is distributed over the
 // tangential ones, so that |T| and |N| add in quadrature; and the coupling by J2 and eccentricity is iterated away.
 
+#include <string_view>
+
+#include <vbar/gnc_configuration.hpp>
+#include <vbar/telemetry_control.hpp>
+#include <vbar/waypoint.hpp>
+
 #include "fsw/control/plan.h"
 
 namespace vbar::fsw::control {
@@ -27,5 +33,23 @@ struct ClosedFormSettings {
 /// fewer than three burn times or only one parity of them (shorter than about an orbit): the next solver is used;
 /// kDidNotConverge if the coupling iteration does not converge.
 Result<Plan> solve_closed_form(const ControlProblem& problem, const ClosedFormSettings& settings = {});
+
+/// The entry of the solver list (solver_list.h).
+struct ClosedForm {
+  static constexpr Solver kId{waypoint::kSolverClosedForm};
+  static constexpr std::string_view kName = "closed_form";
+  static constexpr std::string_view kDescription =
+      "the closed-form solver for near-circular orbits (Chernick and D'Amico 2018)";
+  /// Beyond it terms of the order of the eccentricity, which the closed form iterates away, dominate.
+  static constexpr double kMaxEccentricity = 0.06;
+  static constexpr auto kStatus = &telemetry_control::closed_form_status;
+
+  using Settings = ClosedFormSettings;
+  struct Workspace {};
+  static Settings settings(const gnc_configuration& /*configuration*/, const ThrustWindows& /*windows*/) { return {}; }
+  static Result<Plan> solve(const ControlProblem& problem, const Settings& settings, Workspace& /*workspace*/) {
+    return solve_closed_form(problem, settings);
+  }
+};
 
 }  // namespace vbar::fsw::control

@@ -42,7 +42,7 @@ Result<Plan> solve_koenig_damico(const ControlProblem& problem, const KoenigDami
   if (checked != Status::kOk) return checked;
 
   Plan plan;
-  plan.solver = Solver::kKoenigDamico;
+  plan.solver = KoenigDamico::kId;
   if (problem.servicer_mean.a * problem.pseudo_state.norm() < settings.negligible_change_m) {
     workspace.solution = {};
     return plan;
@@ -59,6 +59,13 @@ Result<Plan> solve_koenig_damico(const ControlProblem& problem, const KoenigDami
     plan.burns[k] = {workspace.times[impulse.time_index], -impulse.dv};
   }
   return plan;
+}
+
+KoenigDamicoSettings KoenigDamico::settings(const gnc_configuration& configuration, const ThrustWindows& windows) {
+  Settings settings;
+  settings.grid_step = {configuration.koenig_damico_grid_ns};
+  settings.windows = windows;
+  return settings;
 }
 
 }  // namespace vbar::fsw::control

@@ -3,6 +3,11 @@
 // J2 dynamics of mean ROE.
 
 #include <array>
+#include <string_view>
+
+#include <vbar/gnc_configuration.hpp>
+#include <vbar/telemetry_control.hpp>
+#include <vbar/waypoint.hpp>
 
 #include "fsw/control/plan.h"
 #include "fsw/control/primer.h"
@@ -11,12 +16,6 @@ namespace vbar::fsw::control {
 
 /// Maximum number of candidate times; on longer horizons the grid widens.
 inline constexpr std::size_t kMaxGridTimes = 640;
-
-/// Defines when thrust is allowed (attitude, camera, eclipse); without a function, always.
-struct ThrustWindows {
-  bool (*allowed)(const void* context, GpsTime time) = nullptr;
-  const void* context = nullptr;
-};
 
 struct KoenigDamicoSettings {
   Duration grid_step = duration_of_seconds(30);  ///< > 0; upper limit if their number allows
@@ -41,5 +40,23 @@ struct KoenigDamicoWorkspace {
 /// allowed, or too few or too close to reach every state), kDidNotConverge.
 Result<Plan> solve_koenig_damico(const ControlProblem& problem, const KoenigDamicoSettings& settings,
                                  KoenigDamicoWorkspace& workspace);
+
+/// The entry of the solver list (solver_list.h).
+struct KoenigDamico {
+  static constexpr Solver kId{waypoint::kSolverKoenigDamico};
+  static constexpr std::string_view kName = "koenig_damico";
+  static constexpr std::string_view kDescription =
+      "the primer-vector solver on a uniform grid of times (Koenig and D'Amico)";
+  /// Beyond it the time grid is too coarse about the perigee.
+  static constexpr double kMaxEccentricity = 0.11;
+  static constexpr auto kStatus = &telemetry_control::koenig_damico_status;
+
+  using Settings = KoenigDamicoSettings;
+  using Workspace = KoenigDamicoWorkspace;
+  static Settings settings(const gnc_configuration& configuration, const ThrustWindows& windows);
+  static Result<Plan> solve(const ControlProblem& problem, const Settings& settings, Workspace& workspace) {
+    return solve_koenig_damico(problem, settings, workspace);
+  }
+};
 
 }  // namespace vbar::fsw::control

@@ -101,7 +101,7 @@ Result<Plan> solve_least_squares(const ControlProblem& problem, const LeastSquar
   const Vector6 multiplier = settings.weight.cwiseProduct(factor.solve(settings.weight.cwiseProduct(target)));
 
   Plan plan;
-  plan.solver = Solver::kLeastSquares;
+  plan.solver = LeastSquares::kId;
   Vector6 residual = target;
   for (std::size_t k = 0; k < system.count; ++k) {
     const Vector3 dv_deputy = system.effects[k].transpose() * multiplier;

@@ -4,6 +4,11 @@
 // a*ROE per m/s. It always returns a solution at constant cost: the last fallback. Not fuel-optimal.
 
 #include <cstddef>
+#include <string_view>
+
+#include <vbar/gnc_configuration.hpp>
+#include <vbar/telemetry_control.hpp>
+#include <vbar/waypoint.hpp>
 
 #include "fsw/control/plan.h"
 
@@ -29,5 +34,21 @@ struct LeastSquaresReport {
 /// (orbit, horizon), kSingular: no choice of times makes the singular values span less than a factor 1e5.
 Result<Plan> solve_least_squares(const ControlProblem& problem, const LeastSquaresSettings& settings = {},
                                  LeastSquaresReport* report = nullptr);
+
+/// The entry of the solver list (solver_list.h).
+struct LeastSquares {
+  static constexpr Solver kId{waypoint::kSolverLeastSquares};
+  static constexpr std::string_view kName = "least_squares";
+  static constexpr std::string_view kDescription = "the least-squares solver on a uniform grid of times";
+  static constexpr double kMaxEccentricity = 0.06;
+  static constexpr auto kStatus = &telemetry_control::least_squares_status;
+
+  using Settings = LeastSquaresSettings;
+  struct Workspace {};
+  static Settings settings(const gnc_configuration& /*configuration*/, const ThrustWindows& /*windows*/) { return {}; }
+  static Result<Plan> solve(const ControlProblem& problem, const Settings& settings, Workspace& /*workspace*/) {
+    return solve_least_squares(problem, settings);
+  }
+};
 
 }  // namespace vbar::fsw::control

@@ -12,6 +12,9 @@
 
 namespace vbar::fsw::control {
 
+/// The solver that decide_leg() replans by.
+using LegSolver = ClosedForm;
+
 /// Inputs of a decision.
 struct LegSituation {
   MeanOrbits orbits;      ///< now

@@ -18,8 +18,14 @@ namespace vbar::fsw::control {
 
 inline constexpr std::size_t kMaxBurns = 32;
 
-/// The solver that made a plan; the numbers are used in packets.
-enum class Solver : signed char { kNone = -1, kClosedForm = 0, kKoenigDamico = 1, kLeastSquares = 2 };
+/// The solver that made a plan: kNone, or kId of an entry of the solver list (solver_list.h).
+enum class Solver : signed char { kNone = -1 };
+
+/// Defines when thrust is allowed (attitude, camera, eclipse); without a function, always.
+struct ThrustWindows {
+  bool (*allowed)(const void* context, GpsTime time) = nullptr;
+  const void* context = nullptr;
+};
 
 /// An impulse of the servicer, m/s in its RTN frame at `time`.
 struct Burn {

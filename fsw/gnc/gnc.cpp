@@ -1,8 +1,5 @@
 #include "fsw/gnc/gnc.h"
 
-#include "fsw/gnc/message_fields.h"
-#include "fsw/math/math.h"
-
 namespace vbar::fsw::gnc {
 
 Gnc::Gnc(std::uint8_t spacecraft, vbar_packet_sink sink, void* sink_context)
@@ -15,14 +12,7 @@ Status Gnc::step(GpsTime now) {
   }
   resume(now);
   verify_state(now);
-  const Duration gap = stepped_ ? now - now_ : Duration{};
-  now_ = now;
-  if (!stepped_) started_ = now;
-  stepped_ = true;
-  const double delay_s = seconds(gap) - seconds(promised_period_);
-  faults_.check(now_, {.fault = telemetry_health::kFaultStepLate,
-                       .is_detected = promised_period_.ns > 0 && delay_s > 0.5 * seconds(promised_period_),
-                       .argument = delay_s});
+  begin_step(now);
 
   manage();
   navigate();
@@ -30,24 +20,25 @@ Status Gnc::step(GpsTime now) {
   supervise();
   respond();
   control();
-  report();
+  command();
+  report(outbox_);
 
-  navigation_.seal();
-  inbox_.clear(now_ + inbox_.step_period());
-  promised_period_ = inbox_.step_period();
-  ++step_;
+  end_step();
   return Status::kOk;
 }
 
-/// An estimate that was changed since the last step, or that the last step had to discard.
 void Gnc::verify_state(GpsTime now) {
-  const Integrity integrity = navigation_.verify();
+  const Integrity integrity = measurements_.verify();
   if (integrity == Integrity::kLost) restart(now);
-  const int failures = navigation_.trunk().trunk().failures();
-  faults_.check(now, {.fault = telemetry_health::kFaultState,
-                      .is_detected = integrity != Integrity::kIntact || failures > failures_,
-                      .argument = static_cast<double>(integrity)});
-  failures_ = failures;
+  check_state(now, integrity);
+}
+
+void Gnc::begin_step(GpsTime now) {
+  const Duration gap = stepped_ ? now - now_ : Duration{};
+  now_ = now;
+  if (!stepped_) started_ = now;
+  stepped_ = true;
+  check_step_period(gap);
 }
 
 void Gnc::manage() {
@@ -56,34 +47,19 @@ void Gnc::manage() {
   if (telecommands_.is_new<fault_command>()) {
     faults_.clear(now_, telecommands_.in_force<fault_command>()->clear);
   }
-  const std::int32_t dropped = inbox_.counters().dropped_full;
-  faults_.check(now_, {.fault = telemetry_health::kFaultInboxFull,
-                       .is_detected = dropped > packets_dropped_,
-                       .argument = static_cast<double>(dropped)});
-  packets_dropped_ = dropped;
-  faults_.check(now_, {.fault = telemetry_health::kFaultClock, .is_detected = false});
+  check_inbox();
 }
 
 void Gnc::navigate() {
   images_.update(now_, inbox_, faults_);
-  navigation_.update(now_, telecommands_, inbox_);
-  navigation_.check_sources(now_, faults_);
-  const NavigationState& state = navigation_.state();
-  const double timeout = management_.configuration().navigation_timeout_s;
-  const GpsTime last_heard = state.last_measurement > started_ ? state.last_measurement : started_;
-  const double age_s = seconds(now_ - last_heard);
-  faults_.check(now_, {.fault = telemetry_health::kFaultNavigationTimeout,
-                       .is_detected = state.valid && age_s > timeout,
-                       .argument = age_s});
-  has_navigated_ = has_navigated_ || state.valid;
-  const double since_start_s = seconds(now_ - started_);
-  faults_.check(now_, {.fault = telemetry_health::kFaultNeverNavigated,
-                       .is_detected = !has_navigated_ && since_start_s > timeout,
-                       .argument = since_start_s});
+  navigation_.update(now_, telecommands_, inbox_, measurements_);
+  measurements_.check_sources(now_, faults_);
+  has_navigated_ = has_navigated_ || navigation_.state().valid;
+  check_navigation();
 }
 
 void Gnc::assess() {
-  guidance_.assess(now_, navigation_, management_);
+  guidance_.assess(now_, navigation_, measurements_.trunk(), management_);
   assessment_.is_known = false;
   const std::optional<DriftSituation> situation = guidance_.drift_situation();
   if (situation && management_.safety() != nullptr) {
@@ -92,7 +68,6 @@ void Gnc::assess() {
   }
 }
 
-/// By the guard, which is independent of navigation.
 void Gnc::supervise() {
   const safety_configuration* safety = management_.safety();
   if (safety == nullptr) return;
@@ -102,31 +77,10 @@ void Gnc::supervise() {
   const NavigationState& state = navigation_.state();
   const double range_m = state.valid ? (state.target.position_eci - state.servicer.position_eci).norm() : 0.0;
   feed_guard(guard_, inbox_, telecommands_, attitude_, range_m);
-  const TrunkNavigation& receivers = navigation_.trunk();
-  feed_guard_codes(guard_, receivers.gnss(), receivers.trunk().settings().earth, range_m);
+  feed_guard_codes(guard_, measurements_.gnss(), measurements_.trunk().settings().earth, range_m);
   check_verdicts(guard_.judge(now_), now_, faults_);
 }
 
-/// A drift counts as unsafe once no plan that leaves it could be flown for the delay that a retreat is allowed, or as
-/// soon as a retreat after that delay would not keep the distance: in an eclipse the uncertainty of a drift grows past
-/// its limit and shrinks again with the first images.
-void Gnc::check_drift(const safety_configuration& safety) {
-  if (!assessment_.is_known) return;
-  const double keep_out = guidance_.keep_out(management_.configuration());
-  const bool is_unsafe = guidance_.is_holding() && assessment_.passive_distance < keep_out;
-  if (!is_unsafe) unsafe_since_.reset();
-  if (is_unsafe && !unsafe_since_) unsafe_since_ = now_;
-  const bool has_lasted = unsafe_since_ && seconds(now_ - *unsafe_since_) >= safety.retreat_delay_s;
-  const bool must_leave = is_unsafe && assessment_.retreat_distance < safety.contact_distance_m;
-  faults_.check(now_, {.fault = telemetry_health::kFaultDriftUnsafe,
-                       .is_detected = has_lasted || must_leave,
-                       .argument = assessment_.passive_distance});
-  faults_.check(now_, {.fault = telemetry_health::kFaultCollisionProbability,
-                       .is_detected = assessment_.collision_probability > safety.maximum_collision_probability,
-                       .argument = assessment_.collision_probability});
-}
-
-/// Faults and what they lead to.
 void Gnc::respond() {
   burns_.update(now_, inbox_, faults_);
   const safety_configuration* safety = management_.safety();
@@ -147,50 +101,38 @@ void Gnc::respond() {
          .roe = guidance_.report().roe},
         management_);
   }
-  faults_.check(now_, {.fault = telemetry_health::kFaultRetreat,
-                       .is_detected = is_retreating,
-                       .argument = math::sqrt(retreat_.burn().dv_rtn.squaredNorm())});
+  check_retreat();
 }
 
 void Gnc::control() {
   const bool may_plan = management_.safety() == nullptr || !faults_.demands(faults::Response::kHold);
   guidance_.update(now_, inbox_.step_period(), navigation_, management_, retreat_, may_plan);
-  for (std::size_t k = 0; k < guidance_.command_count(); ++k) {
-    const CommandedBurn& commanded = guidance_.command(k);
-    navigation_.expect_maneuver(commanded.maneuver_id, commanded.burn.time, commanded.burn.dv_rtn);
-    const Vector3 command = command_for(commanded.burn.dv_rtn);
-    burns_.expect(commanded.maneuver_id, commanded.burn.time, command);
-    guard_.take_command(commanded.maneuver_id, command);
-  }
-  faults_.check(now_, {.fault = telemetry_health::kFaultHold,
-                       .is_detected = guidance_.is_holding(),
-                       .argument = static_cast<double>(guidance_.report().holds)});
+  check_hold();
 }
 
-Vector3 Gnc::command_for(const Vector3& dv_rtn) const {
-  const bool is_off = (faults_.latched() & telemetry_health::kFaultBurnSize) != 0;
-  return is_off ? Vector3(dv_rtn / burns_.scale().scale()) : dv_rtn;
-}
-
-void Gnc::report() {
-  for (std::size_t k = 0; k < guidance_.command_count(); ++k) {
-    const CommandedBurn& commanded = guidance_.command(k);
-    maneuver_command message{};
-    message.maneuver_id = commanded.maneuver_id;
-    message.waypoint_index = commanded.waypoint_index;
-    message.solver = static_cast<std::int8_t>(commanded.solver);
-    copy(command_for(commanded.burn.dv_rtn), message.dv_rtn);
-    outbox_.send(commanded.burn.time, message);
-  }
-  telecommands_.report(outbox_, step_, now_);
-  report_navigation();
+void Gnc::command() {
+  command_maneuvers();
   if (navigation_.uses_camera()) point_camera();
   command_exposures();
-  navigation_.report(outbox_, step_, now_, inbox_);
-  report_control();
-  report_safety();
-  report_health();
-  report_events();
+}
+
+void Gnc::report(Outbox& outbox) const {
+  telecommands_.report(outbox, step_, now_);
+  report_navigation(outbox);
+  measurements_.report(outbox, step_, now_, inbox_);
+  report_control(outbox);
+  report_safety(outbox);
+  report_health(outbox);
+  report_events(outbox);
+}
+
+void Gnc::end_step() {
+  measurements_.forget_transitions();
+  faults_.forget_transitions();
+  measurements_.seal();
+  inbox_.clear(now_ + inbox_.step_period());
+  promised_period_ = inbox_.step_period();
+  ++step_;
 }
 
 }  // namespace vbar::fsw::gnc

@@ -22,6 +22,7 @@
 #include "fsw/gnc/retreat_sequence.h"
 #include "fsw/gnc/step_clock.h"
 #include "fsw/gnc/telecommands.h"
+#include "fsw/gnc/trunk_navigation.h"
 
 namespace vbar::fsw::gnc {
 
@@ -29,7 +30,8 @@ namespace vbar::fsw::gnc {
 struct GncState {
   Telecommands telecommands_;
   Management management_;
-  Navigation navigation_;
+  TrunkNavigation measurements_;
+  NavigationSolution navigation_;
   Guidance guidance_;
   RetreatSequence retreat_;
   Assessment assessment_;
@@ -69,28 +71,50 @@ class Gnc : private GncState {
   static const std::size_t kSnapshotBytes;
 
  private:
+  // The phases of a step, in this order.
+
+  /// Restores an estimate that was changed since the last step, or restarts.
   void verify_state(GpsTime now);
+  void begin_step(GpsTime now);
   void manage();
   void navigate();
   void assess();
+  /// Runs the guard, which judges the approach beside navigation.
   void supervise();
-  void check_drift(const safety_configuration& safety);
+  /// Derives the responses to faults: the retreat.
   void respond();
   void control();
-  void report();
+  /// Acts: sends every command of the step, and notes it where its effect is expected.
+  void command();
+  /// Sends the telemetry of the step; the state stays as it is.
+  void report(Outbox& outbox) const;
+  void end_step();
 
-  /// What is commanded for an impulse that is wanted, with the thruster as its burns have shown it.
-  [[nodiscard]] Vector3 command_for(const Vector3& dv_rtn) const;
+  // Fault checks of the phases (fault_checks.cpp).
+  void check_state(GpsTime now, Integrity integrity);
+  void check_step_period(Duration gap);
+  void check_inbox();
+  void check_navigation();
+  void check_drift(const safety_configuration& safety);
+  void check_retreat();
+  void check_hold();
 
-  void report_navigation();
+  // Commands (gnc_commands.cpp).
+  void command_maneuvers();
   void point_camera();
   void command_exposures();
+  /// Returns what is commanded for an impulse that is wanted, with the thruster as its burns have shown it.
+  [[nodiscard]] Vector3 command_for(const Vector3& dv_rtn) const;
   [[nodiscard]] std::optional<sources::Pointing> pointing_to_target() const;
-  void report_control();
-  void report_safety();
-  void report_health();
-  void report_events();
 
+  // Telemetry (gnc_telemetry.cpp).
+  void report_navigation(Outbox& outbox) const;
+  void report_control(Outbox& outbox) const;
+  void report_safety(Outbox& outbox) const;
+  void report_health(Outbox& outbox) const;
+  void report_events(Outbox& outbox) const;
+
+  // Snapshots and the acceptance of steps (restart.cpp).
   [[nodiscard]] bool accepts(GpsTime now);
   void refuse(GpsTime now);
   void restart(GpsTime now);

@@ -1,4 +1,4 @@
-// report: the telemetry of a step.
+// report: the telemetry of a step. Nothing of the state changes.
 
 #include "fsw/gnc/gnc.h"
 #include "fsw/gnc/message_fields.h"
@@ -18,7 +18,7 @@ static_assert(is_reported_as(NavigationSource::kPose, telemetry_navigation::kSou
 
 }  // namespace
 
-void Gnc::report_navigation() {
+void Gnc::report_navigation(Outbox& outbox) const {
   const NavigationState& state = navigation_.state();
   telemetry_navigation message{};
   message.step = step_;
@@ -34,49 +34,20 @@ void Gnc::report_navigation() {
     copy(state.sigma_rtn, message.sigma_rtn);
     copy(management_.reference_semi_major_axis() * guidance_.report().roe, message.a_roe_mean_m);
   }
-  outbox_.send(now_, message);
+  outbox.send(now_, message);
 }
 
-std::optional<sources::Pointing> Gnc::pointing_to_target() const {
-  const NavigationState& state = navigation_.state();
-  if (state.has_target) {
-    const Result<sources::Pointing> pointing = sources::pointing_at(now_, state.servicer, state.target);
-    return pointing.ok() ? std::optional(pointing.value()) : std::nullopt;
-  }
-  const auto& last_seen_rtn = navigation_.trunk().source<sources::KeypointSource>().last_seen_rtn();
-  if (!last_seen_rtn) return std::nullopt;
-  return sources::Pointing{.time = now_, .boresight_rtn = *last_seen_rtn};
-}
-
-/// Points at the estimated position of the target, not at that of the last image: it moves between images.
-void Gnc::point_camera() {
-  const std::optional<sources::Pointing> pointing = pointing_to_target();
-  if (!pointing) return;
-  navigation_.expect_pointing(*pointing);
-  pointing_command message{};
-  copy(pointing->boresight_rtn, message.boresight_rtn);
-  copy(pointing->boresight_rate_rtn, message.boresight_rate_rtn);
-  outbox_.send(now_, message);
-}
-
-void Gnc::command_exposures() {
-  const auto& keypoints = navigation_.trunk().source<sources::KeypointSource>();
-  for (std::size_t camera = 0; camera < packets::kCameras; ++camera) {
-    const std::optional<double> exposure_s = keypoints.wanted_exposure_s(camera);
-    if (exposure_s) outbox_.send(now_, exposure_command{.exposure_s = *exposure_s}, static_cast<std::uint8_t>(camera));
-  }
-}
-
-void Gnc::report_control() {
+void Gnc::report_control(Outbox& outbox) const {
   const GuidanceReport& guidance = guidance_.report();
   const double a = management_.reference_semi_major_axis();
   telemetry_control message{};
   message.step = step_;
   message.mode = static_cast<std::int8_t>(management_.mode());
   message.active_solver = static_cast<std::int8_t>(guidance.active_solver);
-  message.koenig_damico_status = static_cast<std::int8_t>(guidance.koenig_damico);
-  message.closed_form_status = static_cast<std::int8_t>(guidance.closed_form);
-  message.least_squares_status = static_cast<std::int8_t>(guidance.least_squares);
+  control::any_solver([&]<class Entry>(std::size_t place) {
+    message.*Entry::kStatus = static_cast<std::int8_t>(guidance.status[place]);
+    return false;
+  });
   message.safety_status = static_cast<std::int8_t>(guidance.safety);
   message.waypoint_index = guidance.waypoint_index;
   copy(a * guidance.roe_desired, message.a_roe_desired_m);
@@ -88,10 +59,10 @@ void Gnc::report_control() {
   message.passive_safety_distance_m = guidance.passive_safety_distance;
   message.commanded_dv = guidance_.commanded_dv();
   message.commanded_maneuvers = guidance_.commanded_maneuvers();
-  outbox_.send(now_, message);
+  outbox.send(now_, message);
 }
 
-void Gnc::report_safety() {
+void Gnc::report_safety(Outbox& outbox) const {
   if (management_.safety() == nullptr) return;
   telemetry_safety message{};
   message.step = step_;
@@ -110,10 +81,10 @@ void Gnc::report_safety() {
     message.guard_range_rate = range.range_rate(now_);
     message.guard_age_s = guard_.seen() ? seconds(now_ - *guard_.seen()) : 0.0;
   }
-  outbox_.send(now_, message);
+  outbox.send(now_, message);
 }
 
-void Gnc::report_health() {
+void Gnc::report_health(Outbox& outbox) const {
   const PacketCounters& packets = inbox_.counters();
   const GuidanceReport& guidance = guidance_.report();
   telemetry_health message{};
@@ -126,16 +97,16 @@ void Gnc::report_health() {
   message.rejected_time = packets.rejected_time;
   message.rejected_other = packets.rejected_other;
   message.inbox_dropped = packets.dropped_full;
-  message.outbox_dropped = outbox_.dropped();
+  message.outbox_dropped = outbox.dropped();
   message.solver_fallbacks = guidance.solver_fallbacks;
   message.plans_unsafe = guidance.plans_unsafe;
   message.holds = guidance.holds;
   message.faults = faults_.latched();
   message.faults_present = faults_.present();
-  outbox_.send(now_, message);
+  outbox.send(now_, message);
 }
 
-void Gnc::report_events() {
+void Gnc::report_events(Outbox& outbox) const {
   for (const faults::Transition& transition : faults_.transitions()) {
     telemetry_event event{};
     event.step = step_;
@@ -144,9 +115,8 @@ void Gnc::report_events() {
     event.device = transition.device;
     event.fault = transition.fault;
     event.argument = transition.argument;
-    outbox_.send(transition.time, event);
+    outbox.send(transition.time, event);
   }
-  faults_.forget_transitions();
 }
 
 }  // namespace vbar::fsw::gnc

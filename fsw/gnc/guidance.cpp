@@ -1,8 +1,9 @@
 #include "fsw/gnc/guidance.h"
 
 #include <span>
+#include <tuple>
+#include <type_traits>
 
-#include "fsw/control/least_squares.h"
 #include "fsw/gnc/assessment.h"
 #include "fsw/math/math.h"
 #include "fsw/orbit/mean_osculating.h"
@@ -14,23 +15,10 @@ namespace {
 using control::Plan;
 using control::Solver;
 
-/// The solvers that plan a leg from scratch, best first. (The closed form is invoked by the policy of its legs, leg.h.)
-/// Least squares always provides a plan, if not the cheapest.
-struct Ladder {
-  std::array<Solver, 2> solvers;
-  std::size_t count;
-};
-
-Ladder ladder_of(const Waypoint& goal, bool estimate_too_coarse) {
-  const bool least_squares_only =
-      estimate_too_coarse || static_cast<Solver>(goal.control_mode) == Solver::kLeastSquares;
-  if (least_squares_only) return {{Solver::kLeastSquares}, 1};
-  return {{Solver::kKoenigDamico, Solver::kLeastSquares}, 2};
-}
-
-/// For the fuel-optimal solver replanning costs computing time only. Correcting a plan whose burn was missed can
-/// cost twice as much as a new plan: a correction more expensive by this factor is replaced by one.
-constexpr double kDearCorrection = 1.1;
+/// A correction of a plan that costs more than this multiple of it is replaced by a new plan. For the fuel-optimal
+/// solver replanning costs computing time only, while correcting a plan whose burn was missed can cost twice as much as
+/// a new plan.
+constexpr double kReplanCostRatio = 1.1;
 
 bool is_flyable(const Plan& plan, const gnc_configuration& configuration) {
   for (const control::Burn& burn : plan.all()) {
@@ -77,7 +65,8 @@ Plan joined(const Plan& pending, const Plan& planned) {
 
 }  // namespace
 
-void Guidance::assess(GpsTime now, const Navigation& navigation, const Management& management) {
+void Guidance::assess(GpsTime now, const NavigationSolution& navigation, const filter::RelativeNavigationFilter& filter,
+                      const Management& management) {
   situation_known_ = false;
   const NavigationState& state = navigation.state();
   if (!state.valid) return;
@@ -93,16 +82,16 @@ void Guidance::assess(GpsTime now, const Navigation& navigation, const Managemen
   discard_past_burns(now);
   orbits_ = {now, servicer.value(), target.value()};
   report_.roe = orbit::roe_from_qns(orbits_.servicer, orbits_.target);
-  const Vector6 sigma_a_roe_m = navigation.sigma_a_roe_m();
+  const Vector6 sigma_a_roe_m = navigation.sigma_a_roe_m(filter);
   sigma_roe_ = sigma_a_roe_m / orbits_.servicer.a;
   position_bound_ = three_sigma(state.sigma_rtn, sigma_a_roe_m(0), orbits_.servicer);
-  covariance_m2_ = navigation.a_roe_covariance_m2();
+  covariance_m2_ = navigation.a_roe_covariance_m2(filter);
   if (management.safety() != nullptr) {
     safety_ = *management.safety();
   } else {
     safety_.reset();
   }
-  const filter::FilterSettings& settings = navigation.trunk().trunk().settings();
+  const filter::RelativeNavigationFilterSettings& settings = filter.settings();
   burn_uncertainty_ =
       safety_ ? safety::BurnUncertainty{settings.burn_sigma, settings.burn_sigma_relative} : safety::BurnUncertainty{};
   earliest_burn_ = now + Duration{configuration.compute_latency_ns};
@@ -125,7 +114,7 @@ std::optional<DriftSituation> Guidance::drift_situation() const {
   return DriftSituation{.orbits = orbits.value(), .bound = position_bound_, .covariance_m2 = covariance_m2_};
 }
 
-void Guidance::update(GpsTime now, Duration period, const Navigation& navigation, const Management& management,
+void Guidance::update(GpsTime now, Duration period, const NavigationSolution& navigation, const Management& management,
                       RetreatSequence& retreat, bool may_plan) {
   command_count_ = 0;
   report_.waypoint_index = -1;
@@ -208,9 +197,8 @@ void Guidance::set_goal(GpsTime now, const Waypoint& wanted) {
 
 bool Guidance::decision_is_due(GpsTime now, const gnc_configuration& configuration) {
   if (now < next_decision_) return false;
-  const bool closed_form = static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
-  next_decision_ =
-      now + Duration{closed_form ? configuration.closed_form_period_ns : configuration.koenig_damico_period_ns};
+  const bool is_far = is_leg_of(control::LegSolver::kId);
+  next_decision_ = now + Duration{is_far ? configuration.closed_form_period_ns : configuration.koenig_damico_period_ns};
   return true;
 }
 
@@ -218,44 +206,62 @@ void Guidance::decide(const gnc_configuration& configuration) {
   if (goal_.time <= earliest_burn_) return;  // this waypoint cannot be influenced any more
   const double sigma_m = orbits_.servicer.a * sigma_roe_.maxCoeff();
   const bool too_coarse = configuration.roe_error_threshold_m > 0.0 && sigma_m > configuration.roe_error_threshold_m;
-  is_holding_ = !stays_on_plan(configuration, too_coarse) && !climbs_ladder(configuration, too_coarse);
+  is_holding_ = !stays_on_plan(configuration, too_coarse) && !solver_fallback(configuration, too_coarse);
   if (!is_holding_) return;
   plan_ = {};
   report_.active_solver = Solver::kNone;
   ++report_.holds;
 }
 
-/// Keeps or corrects the plan, or replans by the closed form, according to the policy of the leg. While the estimate is
-/// too coarse, only a plan of least squares is kept.
+/// Keeps or corrects the plan, or replans by the solver of the leg's policy. While the estimate is too coarse, only a
+/// plan of the last solver is kept.
 bool Guidance::stays_on_plan(const gnc_configuration& configuration, bool estimate_too_coarse) {
-  if (estimate_too_coarse && report_.active_solver != Solver::kLeastSquares) return false;
+  if (estimate_too_coarse && report_.active_solver != control::LastSolver::kId) return false;
   const control::LegSituation situation = leg_situation();
-  const bool closed_form = !estimate_too_coarse && static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
+  const bool replans = !estimate_too_coarse && is_leg_of(control::LegSolver::kId);
   const Result<control::LegDecision> decision =
-      closed_form ? control::decide_leg(situation, plan_, leg_policy(configuration))
-                  : control::keep_or_correct(situation, plan_, leg_policy(configuration));
+      replans ? control::decide_leg(situation, plan_, leg_policy(configuration))
+              : control::keep_or_correct(situation, plan_, leg_policy(configuration));
   if (!decision.ok()) return false;
   const control::LegDecision& decided = decision.value();
   if (decided.action == control::LegAction::kHandOver) {
-    if (closed_form) report_.closed_form = decided.closed_form;
+    if (replans) status_of(control::LegSolver::kId) = decided.closed_form;
     return false;
   }
-  if (decided.action == control::LegAction::kReplan) report_.closed_form = decided.closed_form;
-  const bool is_dear = decided.plan.total_dv() > kDearCorrection * plan_.total_dv();
-  if (!closed_form && decided.action == control::LegAction::kCorrect && is_dear) return false;
+  if (decided.action == control::LegAction::kReplan) status_of(control::LegSolver::kId) = decided.closed_form;
+  const bool is_expensive = decided.plan.total_dv() > kReplanCostRatio * plan_.total_dv();
+  if (!replans && decided.action == control::LegAction::kCorrect && is_expensive) return false;
   return adopt_if_flyable(decided.plan, configuration);
 }
 
-bool Guidance::climbs_ladder(const gnc_configuration& configuration, bool estimate_too_coarse) {
-  const Ladder ladder = ladder_of(goal_, estimate_too_coarse);
-  const bool below_closed_form = !estimate_too_coarse && static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
-  for (std::size_t k = 0; k < ladder.count; ++k) {
-    if (k > 0 || below_closed_form) ++report_.solver_fallbacks;
-    const Result<Plan> candidate = solve(ladder.solvers[k], configuration);
-    status_of(ladder.solvers[k]) = candidate.status();
-    if (candidate.ok() && adopt_if_flyable(refined(candidate.value()), configuration)) return true;
-  }
-  return false;
+/// Plans the rest of the leg from scratch.
+template <class Entry>
+Result<Plan> Guidance::solve(const gnc_configuration& configuration) {
+  const control::LegSituation situation = leg_situation();
+  const Result<control::ControlProblem> problem = control::remaining_problem(
+      situation.orbits, situation.committed.all(), situation.earliest_burn, situation.waypoint);
+  if (!problem.ok()) return problem.status();
+  const control::ThrustWindows windows = lit_ ? lit_->thrust_windows() : control::ThrustWindows{};
+  return Entry::solve(problem.value(), Entry::settings(configuration, windows),
+                      std::get<typename Entry::Workspace>(workspaces_));
+}
+
+/// Tries the solvers from that of the leg to the last one, or the last one alone while the estimate is too coarse. The
+/// solver that the policy of the leg replans by has been tried there.
+bool Guidance::solver_fallback(const gnc_configuration& configuration, bool estimate_too_coarse) {
+  const Solver first = estimate_too_coarse ? control::LastSolver::kId : static_cast<Solver>(goal_.control_mode);
+  const std::size_t first_place = control::place_of(first);
+  return control::any_solver([&]<class Entry>(std::size_t place) {
+    if constexpr (std::is_same_v<Entry, control::LegSolver>) {
+      return false;
+    } else {
+      if (place < first_place) return false;
+      if (place > first_place) ++report_.solver_fallbacks;
+      const Result<Plan> candidate = solve<Entry>(configuration);
+      report_.status[place] = candidate.status();
+      return candidate.ok() && adopt_if_flyable(refined(candidate.value()), configuration);
+    }
+  });
 }
 
 /// Solvers are linear; the residual error of the nonlinear model is removed by correcting their burns, where possible.
@@ -290,37 +296,16 @@ bool Guidance::adopt_if_flyable(const Plan& candidate, const gnc_configuration& 
   return true;
 }
 
-Result<Plan> Guidance::solve(Solver solver, const gnc_configuration& configuration) {
-  const control::LegSituation situation = leg_situation();
-  const Result<control::ControlProblem> problem = control::remaining_problem(
-      situation.orbits, situation.committed.all(), situation.earliest_burn, situation.waypoint);
-  if (!problem.ok()) return problem.status();
-  switch (solver) {
-    case Solver::kKoenigDamico: {
-      control::KoenigDamicoSettings settings;
-      settings.grid_step = {configuration.koenig_damico_grid_ns};
-      if (lit_) settings.windows = lit_->thrust_windows();
-      return control::solve_koenig_damico(problem.value(), settings, koenig_damico_workspace_);
-    }
-    case Solver::kLeastSquares:
-      return control::solve_least_squares(problem.value());
-    case Solver::kClosedForm:
-    case Solver::kNone:
-      break;
-  }
-  return Status::kInvalidArgument;
-}
-
 control::LegSituation Guidance::leg_situation() const {
   return {orbits_, pending_, earliest_start(), {goal_.time, goal_.roe}, sigma_roe_};
 }
 
-/// The closed form must arrive within the error that an orbit of corrections removes at negligible cost; the optimal
-/// solver of the close range within millimetres.
+/// A far leg, replanned by its policy, must arrive within the error that an orbit of corrections removes at negligible
+/// cost; the other legs within millimetres.
 control::LegPolicy Guidance::leg_policy(const gnc_configuration& configuration) const {
   control::LegPolicy policy;
-  const bool far = static_cast<Solver>(goal_.control_mode) == Solver::kClosedForm;
-  policy.tolerance_m = far ? configuration.closed_form_tolerance_m : configuration.koenig_damico_tolerance_m;
+  const bool is_far = is_leg_of(control::LegSolver::kId);
+  policy.tolerance_m = is_far ? configuration.closed_form_tolerance_m : configuration.koenig_damico_tolerance_m;
   return policy;
 }
 
@@ -347,19 +332,6 @@ GpsTime Guidance::earliest_start() const {
   return after_pending > earliest_burn_ ? after_pending : earliest_burn_;
 }
 
-Status& Guidance::status_of(Solver solver) {
-  switch (solver) {
-    case Solver::kClosedForm:
-      return report_.closed_form;
-    case Solver::kKoenigDamico:
-      return report_.koenig_damico;
-    case Solver::kLeastSquares:
-    case Solver::kNone:
-      break;
-  }
-  return report_.least_squares;
-}
-
 /// Commanded burns whose time has passed are discarded; they are contained in the state.
 void Guidance::discard_past_burns(GpsTime now) {
   drop_burns_before(pending_, now);
@@ -373,8 +345,8 @@ void Guidance::commit_due_burns(GpsTime now, Duration period, const gnc_configur
          pending_.count < control::kMaxBurns) {
     const control::Burn burn = plan_.burns[0];
     remove_first(plan_);
-    const bool is_in_the_dark = lit_ && plan_.solver == Solver::kKoenigDamico && !lit_->allows(burn.time);
-    if (is_in_the_dark) continue;
+    const bool is_in_eclipse = lit_ && control::observes_windows(plan_.solver) && !lit_->allows(burn.time);
+    if (is_in_eclipse) continue;
     if (burn.time < earliest_burn_ || burn.dv_rtn.norm() < configuration.minimum_dv) continue;
     commands_[command_count_++] = {next_maneuver_id_++, goal_.index, plan_.solver, burn};
     pending_.burns[pending_.count++] = burn;

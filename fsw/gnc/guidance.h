@@ -10,9 +10,9 @@
 #include <optional>
 
 #include "fsw/control/arrival.h"
-#include "fsw/control/koenig_damico.h"
 #include "fsw/control/leg.h"
 #include "fsw/control/plan.h"
+#include "fsw/control/solver_list.h"
 #include "fsw/gnc/lit_windows.h"
 #include "fsw/gnc/management.h"
 #include "fsw/gnc/navigation.h"
@@ -24,9 +24,11 @@ namespace vbar::fsw::gnc {
 /// Decisions of guidance in a step, for telemetry. Statuses are those of the last attempt.
 struct GuidanceReport {
   control::Solver active_solver = control::Solver::kNone;
-  Status koenig_damico = Status::kNotReady;
-  Status closed_form = Status::kNotReady;
-  Status least_squares = Status::kNotReady;
+  std::array<Status, control::kSolvers> status = [] {  ///< in the order of the solver list
+    std::array<Status, control::kSolvers> all{};
+    all.fill(Status::kNotReady);
+    return all;
+  }();
   Status safety = Status::kNotReady;
   std::int32_t waypoint_index = -1;
   Vector6 roe = Vector6::Zero();                  ///< estimated mean ROE now, dimensionless
@@ -58,14 +60,15 @@ class Guidance {
   static constexpr std::size_t kMaxCommandsPerStep = 16;
 
   /// Mean orbits of both spacecraft and the passive safety of the current plan.
-  void assess(GpsTime now, const Navigation& navigation, const Management& management);
+  void assess(GpsTime now, const NavigationSolution& navigation, const filter::RelativeNavigationFilter& filter,
+              const Management& management);
 
   /// Nothing without a situation that is known.
   [[nodiscard]] std::optional<DriftSituation> drift_situation() const;
 
   /// One step: discards past burns, replans if due and necessary, and collects the burns to command. `period` is the
   /// time to the next step. `may_plan`: false if a fault forbids burns other than the retreat's.
-  void update(GpsTime now, Duration period, const Navigation& navigation, const Management& management,
+  void update(GpsTime now, Duration period, const NavigationSolution& navigation, const Management& management,
               RetreatSequence& retreat, bool may_plan);
 
   /// No plan could be flown at the last decision.
@@ -89,11 +92,15 @@ class Guidance {
   bool decision_is_due(GpsTime now, const gnc_configuration& configuration);
   void decide(const gnc_configuration& configuration);
   bool stays_on_plan(const gnc_configuration& configuration, bool estimate_too_coarse);
-  bool climbs_ladder(const gnc_configuration& configuration, bool estimate_too_coarse);
+  bool solver_fallback(const gnc_configuration& configuration, bool estimate_too_coarse);
   bool adopt_if_flyable(const control::Plan& candidate, const gnc_configuration& configuration);
   [[nodiscard]] control::Plan refined(const control::Plan& candidate) const;
-  Result<control::Plan> solve(control::Solver solver, const gnc_configuration& configuration);
-  Status& status_of(control::Solver solver);
+  template <class Entry>
+  Result<control::Plan> solve(const gnc_configuration& configuration);
+  Status& status_of(control::Solver solver) { return report_.status[control::place_of(solver)]; }
+  [[nodiscard]] bool is_leg_of(control::Solver solver) const {
+    return static_cast<control::Solver>(goal_.control_mode) == solver;
+  }
   [[nodiscard]] Result<safety::PlanSafety> safety_of(const control::Plan& candidate,
                                                      const gnc_configuration& configuration) const;
   [[nodiscard]] control::LegSituation leg_situation() const;
@@ -124,7 +131,7 @@ class Guidance {
   double commanded_dv_ = 0.0;
   std::int32_t next_maneuver_id_ = 0;
   GuidanceReport report_;
-  control::KoenigDamicoWorkspace koenig_damico_workspace_;
+  control::SolverWorkspaces workspaces_;
 };
 
 }  // namespace vbar::fsw::gnc

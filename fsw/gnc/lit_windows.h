@@ -1,7 +1,7 @@
 #pragma once
 // Times at which a burn is seen by a camera: in sunlight, from the first images after dawn until shortly before dusk.
 
-#include "fsw/control/koenig_damico.h"
+#include "fsw/control/plan.h"
 #include "fsw/core/gps_time.h"
 #include "fsw/core/types.h"
 #include "fsw/orbit/elements.h"

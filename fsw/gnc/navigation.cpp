@@ -32,12 +32,24 @@ bool is_orbit(const orbit::CartesianState& state) {
   return orbit::qns_from_cartesian(state).ok();
 }
 
+/// Returns 1 sigma of the differential acceleration of the target, m/s^2, of all axes.
+double differential_acceleration_sigma(const filter::Estimate& estimate) {
+  double variance = 0.0;
+  for (int k = filter::kAt<filter::DifferentialAccelerations>; k < filter::kOrbitSize; ++k) {
+    variance += estimate.covariance(k, k);
+  }
+  return math::sqrt(variance);
+}
+
 }  // namespace
 
-void Navigation::update(GpsTime now, const Telecommands& telecommands, Inbox& inbox) {
-  configure(now, telecommands);
+void NavigationSolution::update(GpsTime now, const Telecommands& telecommands, Inbox& inbox,
+                                TrunkNavigation& measurements) {
+  configure(telecommands);
+  measurements.configure(now, telecommands);
   take_maneuvers(now, inbox);
-  take_trunk(now, inbox);
+  measurements.update(now, inbox, own_burns());
+  adopt_estimate(measurements);
   if (!has_reference_) return;
   if (now - reference_.epoch > kLongestDelay + kLongestDelay) move_reference(now - kLongestDelay);
 
@@ -46,54 +58,44 @@ void Navigation::update(GpsTime now, const Telecommands& telecommands, Inbox& in
     drop_state();  // gap too long, or invalid orbit: restart from the next measurement
     return;
   }
-  state_.valid = trunk_.valid();
+  state_.valid = measurements.valid();
   state_.has_target = true;
   state_.epoch = now;
   state_.servicer = present.value().servicer;
   state_.target = present.value().target;
-  state_.source = source_of(now);
-  set_uncertainty(now);
+  state_.source = source_of(now, measurements);
+  set_uncertainty(now, measurements.trunk());
 }
 
-void Navigation::drop_state() {
+void NavigationSolution::drop_state() {
   has_reference_ = false;
   state_.valid = false;
   state_.has_target = false;
 }
 
 /// The source of the newest measurement; of several, the most accurate.
-NavigationSource Navigation::source_of(GpsTime now) const {
-  if (trunk_.uses<sources::IdealSource>() && state_.last_measurement == now) return NavigationSource::kIdeal;
-  const auto& carrier = trunk_.source<sources::CarrierSource>();
+NavigationSource NavigationSolution::source_of(GpsTime now, const TrunkNavigation& measurements) const {
+  if (measurements.uses<sources::IdealSource>() && state_.last_measurement == now) return NavigationSource::kIdeal;
+  const auto& carrier = measurements.source<sources::CarrierSource>();
   if (carrier.aid().is_on() && seconds(now - carrier.last_measurement()) <= kFreshGnss_s) {
     return carrier.is_fixed() ? NavigationSource::kGnssFixed : NavigationSource::kGnssFloat;
   }
-  const auto& keypoints = trunk_.source<sources::KeypointSource>();
+  const auto& keypoints = measurements.source<sources::KeypointSource>();
   if (keypoints.aid().is_on() && keypoints.has_aided()) return NavigationSource::kPose;
-  const auto& bearings = trunk_.source<sources::BearingSource>();
+  const auto& bearings = measurements.source<sources::BearingSource>();
   const bool is_newest = bearings.last_measurement() == state_.last_measurement;
   if (bearings.aid().is_on() && bearings.has_aided() && is_newest) return NavigationSource::kAnglesOnly;
   return NavigationSource::kPropagated;
 }
 
-/// 1 sigma of the differential acceleration of the target, m/s^2, of all axes.
-double Navigation::differential_acceleration_sigma() const {
-  const filter::Estimate& estimate = trunk_.trunk().estimate();
-  double variance = 0.0;
-  for (int k = filter::kAt<filter::DifferentialAccelerations>; k < filter::kOrbitSize; ++k) {
-    variance += estimate.covariance(k, k);
-  }
-  return math::sqrt(variance);
-}
-
 /// Propagates the covariance of position and velocity from the estimator's epoch, including the unmodelled acceleration
 /// and the differential one, known to its sigma.
-void Navigation::set_uncertainty(GpsTime now) {
-  const filter::RelativeNavigationFilter& trunk = trunk_.trunk();
-  const Matrix6 covariance_rtn = filter::covariance_rtn(trunk.estimate(), trunk.servicer());
-  const double coast_s = seconds(now - trunk.epoch());
+void NavigationSolution::set_uncertainty(GpsTime now, const filter::RelativeNavigationFilter& filter) {
+  const Matrix6 covariance_rtn = filter::covariance_rtn(filter.estimate(), filter.servicer());
+  const double coast_s = seconds(now - filter.epoch());
   const double separation = (state_.target.position_eci - state_.servicer.position_eci).norm();
-  const double acceleration = math::hypot(kUnmodelledGradient * separation, differential_acceleration_sigma());
+  const double acceleration =
+      math::hypot(kUnmodelledGradient * separation, differential_acceleration_sigma(filter.estimate()));
   for (int axis = 0; axis < 3; ++axis) {
     const double position = math::sqrt(covariance_rtn(axis, axis));
     const double velocity = math::sqrt(covariance_rtn(3 + axis, 3 + axis));
@@ -105,24 +107,24 @@ void Navigation::set_uncertainty(GpsTime now) {
   if (!(largest < kMaxRelativeSigma * separation + kAlwaysAccurate_m)) state_.valid = false;
 }
 
-/// The estimate of the trunk becomes the reference state again, unless it has none.
-void Navigation::configure(GpsTime now, const Telecommands& telecommands) {
+/// Discards the state if its sources or the a-priori orbit are commanded: the next estimate of the filter, which may be
+/// the present one, becomes the reference state.
+void NavigationSolution::configure(const Telecommands& telecommands) {
   if (telecommands.is_new<navigation_configuration>()) {
     constexpr std::int32_t kCamera = sources::BearingSource::kUse | sources::KeypointSource::kUse;
     uses_camera_ = (telecommands.in_force<navigation_configuration>()->sources & kCamera) != 0;
     drop_state();
   }
   if (telecommands.is_new<target_apriori>()) drop_state();
-  trunk_.configure(now, telecommands);
 }
 
-std::span<const navigation::Burn> Navigation::own_burns() {
+std::span<const navigation::Burn> NavigationSolution::own_burns() {
   for (std::size_t k = 0; k < maneuver_count_; ++k) burns_[k] = {maneuvers_[k].time, maneuvers_[k].dv_rtn};
   return std::span(burns_).first(maneuver_count_);
 }
 
 /// The estimate of a filter becomes the reference state if it is later than the current one.
-void Navigation::set_reference(const Pair& estimated) {
+void NavigationSolution::set_reference(const Pair& estimated) {
   if (!is_orbit(estimated.servicer) || !is_orbit(estimated.target)) return;
   if (has_reference_ && estimated.epoch <= reference_.epoch) return;
   reference_ = estimated;
@@ -130,17 +132,15 @@ void Navigation::set_reference(const Pair& estimated) {
   discard_before(estimated.epoch);
 }
 
-/// Records of the receivers and the camera, each at its own time.
-void Navigation::take_trunk(GpsTime now, Inbox& inbox) {
-  trunk_.update(now, inbox, own_burns());
-  const filter::RelativeNavigationFilter& trunk = trunk_.trunk();
-  const Result<orbit::CartesianState> target = trunk.target();
+void NavigationSolution::adopt_estimate(const TrunkNavigation& measurements) {
+  const filter::RelativeNavigationFilter& filter = measurements.trunk();
+  const Result<orbit::CartesianState> target = filter.target();
   if (!target.ok()) return drop_state();
-  state_.last_measurement = trunk_.last_measurement();
-  set_reference({trunk.epoch(), trunk.servicer(), target.value()});
+  state_.last_measurement = measurements.last_measurement();
+  set_reference({filter.epoch(), filter.servicer(), target.value()});
 }
 
-void Navigation::take_maneuvers(GpsTime now, Inbox& inbox) {
+void NavigationSolution::take_maneuvers(GpsTime now, Inbox& inbox) {
   const auto& reports = inbox.queue<vbar::executed_maneuver>();
   for (std::size_t k = 0; k < reports.size(); ++k) {
     const GpsTime time = reports[k].tag.time;
@@ -159,12 +159,12 @@ void Navigation::take_maneuvers(GpsTime now, Inbox& inbox) {
   }
 }
 
-void Navigation::expect_maneuver(std::int32_t maneuver_id, GpsTime time, const Vector3& dv_rtn) {
+void NavigationSolution::expect_maneuver(std::int32_t maneuver_id, GpsTime time, const Vector3& dv_rtn) {
   remember({maneuver_id, time, dv_rtn});
 }
 
 /// Without measurements the reference state follows at a distance, so that the work of a step stays bounded.
-void Navigation::move_reference(GpsTime time) {
+void NavigationSolution::move_reference(GpsTime time) {
   const Result<Pair> moved = flown_to(time);
   has_reference_ = moved.ok();
   if (!has_reference_) return;
@@ -173,7 +173,7 @@ void Navigation::move_reference(GpsTime time) {
 }
 
 /// The reference states propagated to `time`, including the own maneuvers before it.
-Result<Navigation::Pair> Navigation::flown_to(GpsTime time) const {
+Result<NavigationSolution::Pair> NavigationSolution::flown_to(GpsTime time) const {
   orbit::CartesianState servicer = reference_.servicer;
   GpsTime reached = reference_.epoch;
   const auto coast_to = [&](GpsTime next) {
@@ -195,7 +195,7 @@ Result<Navigation::Pair> Navigation::flown_to(GpsTime time) const {
 
 /// In order of time, those of one instant in order of their number. If the list is full, the reference state advances
 /// past the oldest maneuver: only measurements before it can then no longer be used.
-void Navigation::remember(const OwnManeuver& maneuver) {
+void NavigationSolution::remember(const OwnManeuver& maneuver) {
   if (maneuver_count_ == kMaxManeuvers) {
     if (has_reference_) move_reference(maneuvers_[0].time + Duration{1});
     if (maneuver_count_ == kMaxManeuvers) discard(maneuvers_[0].id);
@@ -208,7 +208,7 @@ void Navigation::remember(const OwnManeuver& maneuver) {
   maneuvers_[place] = maneuver;
 }
 
-void Navigation::discard(std::int32_t maneuver_id) {
+void NavigationSolution::discard(std::int32_t maneuver_id) {
   std::size_t kept = 0;
   for (std::size_t k = 0; k < maneuver_count_; ++k) {
     if (maneuvers_[k].id != maneuver_id) maneuvers_[kept++] = maneuvers_[k];
@@ -216,7 +216,7 @@ void Navigation::discard(std::int32_t maneuver_id) {
   maneuver_count_ = kept;
 }
 
-void Navigation::discard_before(GpsTime time) {
+void NavigationSolution::discard_before(GpsTime time) {
   std::size_t kept = 0;
   for (std::size_t k = 0; k < maneuver_count_; ++k) {
     if (maneuvers_[k].time >= time) maneuvers_[kept++] = maneuvers_[k];
@@ -224,28 +224,29 @@ void Navigation::discard_before(GpsTime time) {
   maneuver_count_ = kept;
 }
 
-/// That of the estimator's epoch, with the drift of the mean longitude and the differential acceleration until the
-/// state (a velocity v changes the elements by at most 2 v / n).
-Vector6 Navigation::sigma_a_roe_m() const {
-  const Matrix6 covariance = trunk_.trunk().a_roe_covariance_m2();
+/// The sigma at the epoch of the filter grows by the drift of the mean longitude and by the differential acceleration
+/// until the state (a velocity v changes the elements by at most 2 v / n).
+Vector6 NavigationSolution::sigma_a_roe_m(const filter::RelativeNavigationFilter& filter) const {
+  const Matrix6 covariance = filter.a_roe_covariance_m2();
   Vector6 sigma;
   for (int k = 0; k < 6; ++k) sigma(k) = math::sqrt(covariance(k, k));
   const auto servicer = orbit::qns_from_cartesian(state_.servicer);
   if (!servicer.ok()) return sigma;
   const double n = orbit::mean_motion(servicer.value().a);
-  const double coast_s = seconds(state_.epoch - trunk_.trunk().epoch());
-  const double changed = 2.0 / n * differential_acceleration_sigma() * coast_s;
+  const double coast_s = seconds(state_.epoch - filter.epoch());
+  const double changed = 2.0 / n * differential_acceleration_sigma(filter.estimate()) * coast_s;
   sigma(1) += 1.5 * n * coast_s * sigma(0);
   for (int k = 0; k < 6; ++k) sigma(k) = math::hypot(sigma(k), changed);
   return sigma;
 }
 
-Matrix6 Navigation::a_roe_covariance_m2() const {
-  const Matrix6 covariance = trunk_.trunk().a_roe_covariance_m2();
+Matrix6 NavigationSolution::a_roe_covariance_m2(const filter::RelativeNavigationFilter& filter) const {
+  const Matrix6 covariance = filter.a_roe_covariance_m2();
   const auto servicer = orbit::qns_from_cartesian(state_.servicer);
   if (!servicer.ok()) return covariance;
-  const double coast_s = seconds(state_.epoch - trunk_.trunk().epoch());
-  const double changed = 2.0 / orbit::mean_motion(servicer.value().a) * differential_acceleration_sigma() * coast_s;
+  const double coast_s = seconds(state_.epoch - filter.epoch());
+  const double changed =
+      2.0 / orbit::mean_motion(servicer.value().a) * differential_acceleration_sigma(filter.estimate()) * coast_s;
   const Matrix6 transition = orbit::roe_transition_j2(servicer.value(), coast_s);
   return transition * covariance * transition.transpose() + changed * changed * Matrix6::Identity();
 }

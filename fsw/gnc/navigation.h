@@ -1,11 +1,9 @@
 #pragma once
-// navigate: the state of servicer and target at the time of the step, from measurements at their own times and own
-// maneuvers. A telecommand selects the sources of the trunk (trunk_navigation.h): true states in a packet, or the
-// servicer's own receiver with any of bearings, keypoints, ranges and the receiver of the target; between measurements
-// the state is propagated under J2.
+// navigate: the state of servicer and target at the time of the step, from the relative navigation filter at its own
+// epoch and the servicer's own maneuvers since. Between measurements the state is propagated under J2.
 //
-// Late inputs are used: the state is rebuilt at each step from a reference state, that of the last measurement, and the
-// own maneuvers since. A commanded maneuver is assumed executed as commanded until the actuator reports otherwise, so
+// Late inputs are used: each step rebuilds the state from a reference state, that of the last measurement, and the
+// maneuvers after it. A commanded maneuver is assumed executed as commanded until the actuator reports otherwise, so
 // that neither a late nor a lost report causes guidance to repeat it.
 
 #include <array>
@@ -43,38 +41,25 @@ struct NavigationState {
   Vector6 sigma_rtn = Vector6::Zero();
 };
 
-class Navigation {
+class NavigationSolution {
  public:
-  /// Derives the settings from telecommands that are new, and propagates the state to `now`. Entries tagged after `now`
-  /// or before the reference state are counted as unusable.
-  void update(GpsTime now, const Telecommands& telecommands, Inbox& inbox);
+  /// Configures and updates `measurements`, and propagates its estimate to `now`. Entries of the inbox tagged after
+  /// `now` or before the reference state are counted as unusable.
+  void update(GpsTime now, const Telecommands& telecommands, Inbox& inbox, TrunkNavigation& measurements);
 
-  /// A maneuver was commanded: `dv_rtn` (m/s) at `time`, which lies after the last update.
+  /// Notes a commanded maneuver: `dv_rtn` (m/s) at `time`, which lies after the last update.
   void expect_maneuver(std::int32_t maneuver_id, GpsTime time, const Vector3& dv_rtn);
 
   [[nodiscard]] const NavigationState& state() const { return state_; }
 
-  /// Telemetry and events of the sources.
-  void report(Outbox& outbox, std::int64_t step, GpsTime now, const Inbox& inbox) {
-    trunk_.report(outbox, step, now, inbox);
-  }
-
-  /// Inconsistency, repeated restarts and contradictions of sources.
-  void check_sources(GpsTime now, faults::FaultMonitor& faults) { trunk_.check_sources(now, faults); }
-
-  [[nodiscard]] const TrunkNavigation& trunk() const { return trunk_; }
-  /// The estimate is at rest until the next step, which begins with verify(): state_integrity.h.
-  void seal() { trunk_.seal(); }
-  [[nodiscard]] Integrity verify() { return trunk_.verify(); }
+  /// Whether a source that uses a camera is selected: the camera is pointed before the source's telecommands are
+  /// complete.
   [[nodiscard]] bool uses_camera() const { return uses_camera_; }
 
-  /// Commanded pointing of the camera, after the last update.
-  void expect_pointing(const sources::Pointing& pointing) { trunk_.set_pointing(pointing); }
-
-  /// 1 sigma of a * ROE (m, six components).
-  [[nodiscard]] Vector6 sigma_a_roe_m() const;
-  /// Their covariance, m^2, at the state.
-  [[nodiscard]] Matrix6 a_roe_covariance_m2() const;
+  /// Returns 1 sigma of a * ROE (m, six components) at the state, for the estimate of `filter`.
+  [[nodiscard]] Vector6 sigma_a_roe_m(const filter::RelativeNavigationFilter& filter) const;
+  /// Returns the covariance of a * ROE (m^2) at the state, for the estimate of `filter`.
+  [[nodiscard]] Matrix6 a_roe_covariance_m2(const filter::RelativeNavigationFilter& filter) const;
 
  private:
   /// Both spacecraft at one instant, before any impulse of that instant.
@@ -89,14 +74,13 @@ class Navigation {
     Vector3 dv_rtn = Vector3::Zero();
   };
 
-  void configure(GpsTime now, const Telecommands& telecommands);
-  void take_trunk(GpsTime now, Inbox& inbox);
-  [[nodiscard]] double differential_acceleration_sigma() const;
+  void configure(const Telecommands& telecommands);
+  void adopt_estimate(const TrunkNavigation& measurements);
   void set_reference(const Pair& estimated);
   void drop_state();
   [[nodiscard]] std::span<const navigation::Burn> own_burns();
-  [[nodiscard]] NavigationSource source_of(GpsTime now) const;
-  void set_uncertainty(GpsTime now);
+  [[nodiscard]] NavigationSource source_of(GpsTime now, const TrunkNavigation& measurements) const;
+  void set_uncertainty(GpsTime now, const filter::RelativeNavigationFilter& filter);
   void take_maneuvers(GpsTime now, Inbox& inbox);
   void move_reference(GpsTime time);
   [[nodiscard]] Result<Pair> flown_to(GpsTime time) const;
@@ -112,8 +96,7 @@ class Navigation {
   std::array<OwnManeuver, kMaxManeuvers> maneuvers_{};  ///< in order of time, none before the reference state
   std::size_t maneuver_count_ = 0;
 
-  bool uses_camera_ = false;  ///< selected: the camera is pointed before its telecommands are complete
-  TrunkNavigation trunk_;
+  bool uses_camera_ = false;
   std::array<navigation::Burn, kMaxManeuvers> burns_{};
 };
 

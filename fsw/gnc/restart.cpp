@@ -10,7 +10,7 @@ namespace vbar::fsw::gnc {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x52414256;  // "VBAR" in the order of a little-endian computer
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
 constexpr Duration kOldestWarm = duration_of_seconds(600);
 
 /// Without padding; the representation is that of the computer.
@@ -112,8 +112,9 @@ void Gnc::refuse(GpsTime now) {
   for (std::size_t k = 0; k < commands.size(); ++k) {
     if ((commands[k].value.clear & telemetry_health::kFaultClock) != 0) clock_.accept_next();
   }
-  report_health();
-  report_events();
+  report_health(outbox_);
+  report_events(outbox_);
+  faults_.forget_transitions();
   inbox_.clear(now_);
 }
 
@@ -147,6 +148,7 @@ void Gnc::restart(GpsTime now) {
     new (&member) Member();
   };
   renew(management_);
+  renew(measurements_);
   renew(navigation_);
   renew(guidance_);
   renew(retreat_);

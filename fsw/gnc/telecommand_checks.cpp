@@ -20,7 +20,7 @@ bool is_usable_span(double s) {
 }
 
 bool is_valid(const waypoint& w) {
-  if (!is_usable(GpsTime{w.gps_time_ns}) || w.control_mode < 0 || w.control_mode > 2) return false;
+  if (!is_usable(GpsTime{w.gps_time_ns}) || !control::is_solver(w.control_mode)) return false;
   for (const double a_roe : w.a_roe_m) {
     if (math::abs(a_roe) > kLargestARoe) return false;
   }

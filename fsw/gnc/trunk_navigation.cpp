@@ -231,15 +231,18 @@ void TrunkNavigation::isolate(GpsTime now, std::size_t index, Source& source) {
   }
 }
 
-void TrunkNavigation::report(Outbox& outbox, std::int64_t step, GpsTime now, const Inbox& inbox) {
+void TrunkNavigation::report(Outbox& outbox, std::int64_t step, GpsTime now, const Inbox& inbox) const {
   const sources::Telemetry telemetry{outbox, step, now, inbox, gnss_, trunk_};
-  for_each(sources_, [&]<class Source>(Source& source, std::uint8_t /*index*/) {
+  for_each(sources_, [&]<class Source>(const Source& source, std::uint8_t /*index*/) {
     if (source.aid().is_on()) source.report(telemetry);
     for (const sources::AidTransition& transition : source.aid().transitions()) {
       outbox.send(transition.time, event_of(transition, Source::kUse, step));
     }
-    source.aid().forget_transitions();
   });
+}
+
+void TrunkNavigation::forget_transitions() {
+  for_each(sources_, [](auto& source, std::uint8_t /*index*/) { source.aid().forget_transitions(); });
 }
 
 }  // namespace vbar::fsw::gnc

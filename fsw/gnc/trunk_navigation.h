@@ -72,8 +72,10 @@ class TrunkNavigation {
   /// As after an unknown burn, m/s: the own orbit of a receiver that contradicts it and that nothing else measures.
   static constexpr double kAbsoluteOrbitInflation = 0.05;
 
-  /// Telemetry of the sources in use, and an event of each change of the state of any source.
-  void report(Outbox& outbox, std::int64_t step, GpsTime now, const Inbox& inbox);
+  /// Sends the telemetry of the sources in use, and an event of each change of the state of any source.
+  void report(Outbox& outbox, std::int64_t step, GpsTime now, const Inbox& inbox) const;
+  /// Forgets the changes of state that were reported.
+  void forget_transitions();
 
  private:
   void select(GpsTime now, const Telecommands& telecommands);

@@ -175,9 +175,7 @@ void FlightRecorder::on_telemetry(report::EstimateRow& row, const fsw::packets::
     row.active_solver = m.active_solver;
     row.waypoint_index = m.waypoint_index;
     row.planned_burns = m.planned_burns;
-    row.koenig_damico_status = m.koenig_damico_status;
-    row.closed_form_status = m.closed_form_status;
-    row.least_squares_status = m.least_squares_status;
+    row.solver_status = report::solver_statuses(m);
     row.safety_status = m.safety_status;
     row.planned_dv_mps = m.planned_dv;
     row.passive_safety_distance_m = m.passive_safety_distance_m;

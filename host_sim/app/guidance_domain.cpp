@@ -9,7 +9,9 @@
 #include <string_view>
 
 #include <fmt/format.h>
+#include <vbar/fields.h>
 
+#include "fsw/control/solver_list.h"
 #include "fsw/gnc/inbox.h"
 #include "fsw/orbit/mean_osculating.h"
 #include "host_sim/truth/earth/time_scales.h"
@@ -17,28 +19,33 @@
 namespace vbar::app {
 namespace {
 
+/// A solver, and the largest mean eccentricity up to which the whole rendezvous with ideal navigation stays within
+/// twice the control error and cost of the paper's orbit (docs/data_formats.md, "Orbits").
 struct Domain {
-  mission::Solver solver;
+  int solver = waypoint::kSolverNone;
   std::string_view name;         ///< in missions
   std::string_view description;  ///< of the algorithm
-  double max_eccentricity;
+  double max_eccentricity = 0.0;
 };
 
-/// Limits: eccentricities up to which the whole rendezvous with ideal navigation stays within twice the control error
-/// and cost of the paper's orbit (docs/data_formats.md, "Orbits"). Beyond them terms of order e that the closed form
-/// iterates away, and the fixed time grid of the primer-vector solver, which is coarse about perigee, dominate.
-constexpr std::array<Domain, 3> kDomains{{
-    {mission::Solver::kClosedForm, "closed_form",
-     "the closed-form solver for near-circular orbits (Chernick and D'Amico 2018)", 0.06},
-    {mission::Solver::kKoenigDamico, "koenig_damico",
-     "the primer-vector solver on a uniform grid of times (Koenig and D'Amico)", 0.11},
-    {mission::Solver::kLeastSquares, "least_squares", "the least-squares solver on a uniform grid of times", 0.06},
-}};
+constexpr std::array<Domain, fsw::control::kSolvers> kDomains = [] {
+  std::array<Domain, fsw::control::kSolvers> domains{};
+  fsw::control::any_solver([&]<class Entry>(std::size_t place) {
+    domains[place] = {static_cast<int>(Entry::kId), Entry::kName, Entry::kDescription, Entry::kMaxEccentricity};
+    return false;
+  });
+  return domains;
+}();
+
+/// The words of missions and telemetry are those of the code, for every solver.
+static_assert(std::ranges::all_of(codes::waypoint_kSolver, [](const Code& code) {
+  return code.value == waypoint::kSolverNone || std::ranges::any_of(kDomains, [&](const Domain& domain) {
+           return domain.solver == code.value && domain.name == code.word;
+         });
+}));
 
 const Domain& domain_of(mission::Solver solver) {
-  for (const Domain& domain : kDomains)
-    if (domain.solver == solver) return domain;
-  return kDomains.front();
+  return kDomains[fsw::control::place_of(static_cast<fsw::control::Solver>(solver))];
 }
 
 /// Relative quasi-nonsingular elements are singular in the equator: the nodes of two spacecraft lie 1/sin i of their

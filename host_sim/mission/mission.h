@@ -211,15 +211,15 @@ template <class Settings>
   return nullptr;
 }
 
-/// The solver that plans the leg ending at a waypoint; numbers as in vbar.lcm.
-enum class Solver : std::int8_t { kClosedForm = 0, kKoenigDamico = 1, kLeastSquares = 2 };
+/// The solver that plans the leg ending at a waypoint: kSolver of vbar.lcm's waypoint.
+enum class Solver : std::int8_t {};
 
 struct Waypoint {
   int index = 0;
   fsw::GpsTime time;
   fsw::Vector6 a_roe_m =
       fsw::Vector6::Zero();  ///< mean ROE of the target with respect to the servicer, times the reference a
-  Solver solver = Solver::kClosedForm;
+  Solver solver{waypoint::kSolverClosedForm};
   std::optional<double> keep_out_radius_m;  ///< of the leg that ends here; default: that of guidance
 };
 

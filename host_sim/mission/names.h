@@ -2,8 +2,12 @@
 // The names of the enumerations in mission files, summaries and messages: one list each.
 
 #include <array>
+#include <cstddef>
+#include <iterator>
 #include <string_view>
 #include <utility>
+
+#include <vbar/fields.h>
 
 #include "host_sim/mission/mission.h"
 
@@ -20,9 +24,14 @@ inline constexpr Names<FlightTarget, 5> kFlightTargets{{{"in_process", FlightTar
                                                         {"zynq_linux_qemu", FlightTarget::kZynqLinuxQemu},
                                                         {"board", FlightTarget::kBoard}}};
 inline constexpr Names<FlightLink, 2> kFlightLinks{{{"serial", FlightLink::kSerial}, {"udp", FlightLink::kUdp}}};
-inline constexpr Names<Solver, 3> kSolvers{{{"closed_form", Solver::kClosedForm},
-                                            {"koenig_damico", Solver::kKoenigDamico},
-                                            {"least_squares", Solver::kLeastSquares}}};
+/// The words of waypoint.kSolver in vbar.lcm, without none.
+inline constexpr auto kSolvers = [] {
+  Names<Solver, std::size(codes::waypoint_kSolver) - 1> names{};
+  std::size_t count = 0;
+  for (const Code& code : codes::waypoint_kSolver)
+    if (code.value != waypoint::kSolverNone) names[count++] = {code.word, static_cast<Solver>(code.value)};
+  return names;
+}();
 inline constexpr Names<Mode, 5> kModes{{{"idle", Mode::kIdle},
                                         {"approach", Mode::kApproach},
                                         {"station_keeping", Mode::kStationKeeping},

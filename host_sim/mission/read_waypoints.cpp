@@ -12,7 +12,7 @@ Waypoint read_waypoint(const TableReader& section, const Mission& mission) {
   waypoint.time = mission.epoch + section.span("time_h", kHour_s, from_to(0.0, kLongestMission_h));
   const auto a_roe_m = section.six_numbers("a_roe_m", from_to(-kLargestARoe_m, kLargestARoe_m));
   waypoint.a_roe_m = Eigen::Map<const fsw::Vector6>(a_roe_m.data());
-  waypoint.solver = section.choice<Solver>("solver", kSolvers, Solver::kClosedForm);
+  waypoint.solver = section.choice<Solver>("solver", kSolvers, Waypoint{}.solver);
   if (section.has("keep_out_radius_m"))
     waypoint.keep_out_radius_m = section.number("keep_out_radius_m", from_to(0.0, 1e5));
   section.finish();

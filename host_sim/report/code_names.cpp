@@ -26,6 +26,12 @@ std::string mode_name(int mode) {
 std::string solver_name(int solver) {
   return solver == waypoint::kSolverKoenigDamico ? "Koenig-D'Amico" : name_in(codes::waypoint_kSolver, solver);
 }
+std::vector<int> solvers() {
+  std::vector<int> all;
+  for (const Code& code : codes::waypoint_kSolver)
+    if (code.value != waypoint::kSolverNone) all.push_back(code.value);
+  return all;
+}
 std::string status_name(int status) {
   return name_in(codes::telemetry_control_kStatus, status);
 }

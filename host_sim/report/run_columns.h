@@ -147,12 +147,9 @@ void visit_columns(Row& row, Visitor& visit) {
   coded(visit, "active_solver", "solver of the plan being flown", words(codes::waypoint_kSolver), row.active_solver);
   visit(ColumnName{"waypoint_index", "next waypoint, -1 none"}, row.waypoint_index);
   visit(ColumnName{"planned_burns", "left in the plan"}, row.planned_burns);
-  coded(visit, "koenig_damico_status", "of the last attempt of this solver", words(codes::telemetry_control_kStatus),
-        row.koenig_damico_status);
-  coded(visit, "closed_form_status", "of the last attempt of this solver", words(codes::telemetry_control_kStatus),
-        row.closed_form_status);
-  coded(visit, "least_squares_status", "of the last attempt of this solver", words(codes::telemetry_control_kStatus),
-        row.least_squares_status);
+  for (std::size_t k = 0; k < kSolverStatuses; ++k)
+    coded(visit, kSolverStatusFields[k].name, "of the last attempt of this solver",
+          words(codes::telemetry_control_kStatus), row.solver_status[k]);
   coded(visit, "safety_status", "of the last assessment of a plan", words(codes::telemetry_control_kStatus),
         row.safety_status);
   visit(ColumnName{"planned_dv_mps", "of the burns left in the plan"}, row.planned_dv_mps);

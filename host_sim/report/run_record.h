@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "fsw/packets/message_traits.h"
+#include "host_sim/report/solver_status.h"
 #include "host_sim/report/summary.h"
 
 namespace vbar::report {
@@ -60,7 +61,8 @@ struct EstimateRow {
   Sextuple sigma_rtn{};
   Sextuple a_roe_mean_m{}, a_roe_desired_m{}, predicted_a_roe_error_m{};
   int mode = 0, active_solver = -1, waypoint_index = -1, planned_burns = 0;
-  int koenig_damico_status = 0, closed_form_status = 0, least_squares_status = 0, safety_status = 0;
+  SolverStatuses solver_status{};
+  int safety_status = 0;
   double planned_dv_mps = 0.0, passive_safety_distance_m = 0.0, commanded_dv_mps = 0.0;
   std::uint64_t step_cost = 0;  ///< instructions or cycles, 0 where the target cannot count them
   std::uint32_t stack_bytes = 0;

@@ -40,7 +40,7 @@ Band warning_unless_ok(int status) {
 }
 
 std::string what_was_done_when(const RunRecord& record) {
-  const std::vector<TimelineRow> rows{
+  std::vector<TimelineRow> rows{
       {"mode", bands(
                    record, [](const EstimateRow& r) { return r.mode; },
                    [](int mode) {
@@ -57,16 +57,18 @@ std::string what_was_done_when(const RunRecord& record) {
                       record, [](const EstimateRow& r) { return r.active_solver; },
                       [](int solver) {
                         return Band{.colour = std::clamp(solver, 0, 5), .text = solver < 0 ? "" : solver_name(solver)};
-                      })},
-      {"closed form", bands(
-                          record, [](const EstimateRow& r) { return r.closed_form_status; }, warning_unless_ok)},
-      {"Koenig-D'Amico", bands(
-                             record, [](const EstimateRow& r) { return r.koenig_damico_status; }, warning_unless_ok)},
-      {"least squares", bands(
-                            record, [](const EstimateRow& r) { return r.least_squares_status; }, warning_unless_ok)},
+                      })}};
+  for (const int solver : solvers()) {
+    const std::size_t place = place_of_status(solver);
+    if (place == kSolverStatuses) continue;
+    rows.push_back({solver_name(solver),
+                    bands(
+                        record, [&](const EstimateRow& r) { return r.solver_status[place]; }, warning_unless_ok)});
+  }
+  rows.push_back(
       {"passive safety", bands(
-                             record, [](const EstimateRow& r) { return r.safety_status; }, warning_unless_ok)}};
-  return "<p class=\"note\">The last four rows show status codes other than ok.</p>\n" +
+                             record, [](const EstimateRow& r) { return r.safety_status; }, warning_unless_ok)});
+  return "<p class=\"note\">The rows of the solvers and of passive safety show status codes other than ok.</p>\n" +
          figures(1, {timeline(rows, hours_of(whole_run(record)))});
 }
 

@@ -1,5 +1,3 @@
-#include <array>
-
 #include <fmt/format.h>
 
 #include "host_sim/report/code_names.h"
@@ -20,14 +18,15 @@ Plot cumulative_plot(const std::vector<ManeuverRow>& executed, const View& view)
   return plot;
 }
 
-/// Closed form, Koenig-D'Amico, least squares; -1: a maneuver that no solver of the flight software planned.
-constexpr std::array kSolvers{0, 1, 2, -1};
+/// Colour of maneuvers that no solver of the flight software planned.
 constexpr int kNoSolverColour = 5;
 
 Plot size_plot(const std::vector<ManeuverRow>& executed, const View& view) {
   Plot plot = time_plot(view, "Size of each maneuver by solver", "delta-v", Unit::kMetresPerSecond, 240.0);
   plot.y.logarithmic = true;
-  for (const int solver : kSolvers) {
+  std::vector<int> planners = solvers();
+  planners.push_back(waypoint::kSolverNone);
+  for (const int solver : planners) {
     Series series{"solver: " + solver_name(solver), solver < 0 ? kNoSolverColour : solver, Mark::kDots, {}};
     for (const ManeuverRow& row : executed) {
       if (row.solver != solver) continue;

@@ -61,7 +61,8 @@ EmulatedPair::EmulatedPair(const CoastingPair& coast, std::uint64_t seed, const 
     : coast_(coast),
       mission_(experiment3(coast.overrides(), overrides)),
       inbox_(kServicerNumber),
-      navigation_(std::make_unique<fsw::gnc::Navigation>()) {
+      measurements_(std::make_unique<fsw::gnc::TrunkNavigation>()),
+      navigation_(std::make_unique<fsw::gnc::NavigationSolution>()) {
   mission_.seed = seed;
   const mission::Spacecraft& servicer = *mission_.find_spacecraft("servicer");
   sensors_ = sensors::make_sources(mission_, servicer, kRoot + "/data").sources;
@@ -88,7 +89,7 @@ void EmulatedPair::fly(int epochs) {
     if (tamper_) tamper_(static_cast<int>(next_), packets);
     for (const twins::Packet& packet : packets) static_cast<void>(inbox_.receive(packet));
     telecommands_.update(truth.time, inbox_);
-    navigation_->update(truth.time, telecommands_, inbox_);
+    navigation_->update(truth.time, telecommands_, inbox_, *measurements_);
     inbox_.clear(GpsTime{});
   }
 }

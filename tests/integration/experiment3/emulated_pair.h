@@ -54,13 +54,13 @@ class EmulatedPair {
   void fly(int epochs = 1);
   [[nodiscard]] bool done() const { return next_ >= coast_.epochs().size(); }
 
-  [[nodiscard]] const fsw::gnc::Navigation& navigation() const { return *navigation_; }
-  [[nodiscard]] const fsw::filter::RelativeNavigationFilter& trunk() const { return navigation_->trunk().trunk(); }
+  [[nodiscard]] const fsw::gnc::NavigationSolution& navigation() const { return *navigation_; }
+  [[nodiscard]] const fsw::filter::RelativeNavigationFilter& trunk() const { return measurements_->trunk(); }
   [[nodiscard]] const fsw::sources::CarrierAiding& carrier() const {
-    return navigation_->trunk().source<fsw::sources::CarrierSource>().aiding();
+    return measurements_->source<fsw::sources::CarrierSource>().aiding();
   }
   /// Whether there is a relative orbit from measurements.
-  [[nodiscard]] bool valid() const { return navigation_->trunk().valid(); }
+  [[nodiscard]] bool valid() const { return measurements_->valid(); }
   [[nodiscard]] bool is_fixed() const { return valid() && carrier().is_fixed(); }
   [[nodiscard]] double elapsed_s() const;
 
@@ -104,7 +104,8 @@ class EmulatedPair {
   std::map<fsw::GpsTime, Integers> integers_;  ///< target minus servicer
   fsw::gnc::Inbox inbox_;
   fsw::gnc::Telecommands telecommands_;
-  std::unique_ptr<fsw::gnc::Navigation> navigation_;
+  std::unique_ptr<fsw::gnc::TrunkNavigation> measurements_;
+  std::unique_ptr<fsw::gnc::NavigationSolution> navigation_;
   Tamper tamper_;
   std::size_t next_ = 0;
 };

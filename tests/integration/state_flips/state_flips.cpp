@@ -23,7 +23,7 @@ std::vector<std::string> snapshot_files;
 constexpr Duration kPeriod = duration_of_seconds(5);
 
 std::span<unsigned char> filter_in(Article& article) {
-  return bytes_of(state_of(article).navigation_.trunk().trunk());
+  return bytes_of(state_of(article).measurements_.trunk());
 }
 
 /// The bytes behind the line of text at the beginning.

@@ -33,7 +33,7 @@ TEST(ClosedForm, FarLegsCostLittleMoreThanTheFuelOptimum) {
     const ControlProblem problem = legs::problem(leg);
     const Result<Plan> plan = solve_closed_form(problem);
     ASSERT_TRUE(plan.ok()) << leg.from;
-    EXPECT_EQ(plan.value().solver, Solver::kClosedForm);
+    EXPECT_EQ(plan.value().solver, ClosedForm::kId);
     const double cost = plan.value().total_dv();
     // Never below the optimum (the reference stops within 1 % of it and is rounded in the last digit); above it by at
     // most the 5.3 % that leg 6 to 7 gives away to a grid of burn times.

@@ -52,7 +52,7 @@ TEST_F(KoenigDamico, Leg8To9CostsTheConeSolversOptimum) {
   EXPECT_GE(plan.value().total_dv(), 4.50630e-3 * (1.0 - 1e-5));
   EXPECT_LE(plan.value().total_dv(), 4.50630e-3 * (1.0 + 1e-3 + 1e-5));
   EXPECT_LE(plan.value().count, kMaxImpulses);
-  EXPECT_EQ(plan.value().solver, Solver::kKoenigDamico);
+  EXPECT_EQ(plan.value().solver, control::KoenigDamico::kId);
 }
 
 // The burns of CVXOPT's solution for a manoeuvring deputy: at 0, about 1575 and 3600 s.

@@ -44,7 +44,7 @@ TEST(LeastSquares, ThreeBurnsOfLeg8To9AreTheMinimumNormSolution) {
   expect_deputy_burn(plan.value().burns[1], 0.45886, 0.48460, 1.89412);
   expect_deputy_burn(plan.value().burns[2], -0.90679, -0.27481, -0.92066);
   EXPECT_NEAR(plan.value().total_dv(), 4.70005e-3, kTolerance);
-  EXPECT_EQ(plan.value().solver, Solver::kLeastSquares);
+  EXPECT_EQ(plan.value().solver, LeastSquares::kId);
 }
 
 TEST(LeastSquares, RegularisationTradesArrivalForFuel) {

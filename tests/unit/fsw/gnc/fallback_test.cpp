@@ -164,9 +164,9 @@ TEST(Safety, UnsafePlansAreRefusedCountedAndNotFlown) {
     const Answer answer = flight.step();
     EXPECT_EQ(answer.control.active_solver, kNone);
     EXPECT_EQ(answer.control.safety_status, static_cast<std::int8_t>(Status::kUnsafe));
-    const int rungs = solver == kLeastSquares ? 1 : solver == kKoenigDamico ? 2 : 3;
-    EXPECT_EQ(answer.health.plans_unsafe, rungs);
-    EXPECT_EQ(answer.health.solver_fallbacks, rungs - 1);
+    const int attempts = solver == kLeastSquares ? 1 : solver == kKoenigDamico ? 2 : 3;
+    EXPECT_EQ(answer.health.plans_unsafe, attempts);
+    EXPECT_EQ(answer.health.solver_fallbacks, attempts - 1);
     EXPECT_EQ(answer.health.holds, 1);
     EXPECT_EQ(answer.health.faults, telemetry_health::kFaultHold);
     EXPECT_TRUE(answer.commands.empty());

@@ -37,12 +37,13 @@ class NavigationTest : public ::testing::Test {
  protected:
   void update(std::int64_t seconds) {
     telecommands_.update({seconds * kSecond}, inbox_);
-    navigation_.update({seconds * kSecond}, telecommands_, inbox_);
+    navigation_.update({seconds * kSecond}, telecommands_, inbox_, measurements_);
     inbox_.clear(GpsTime{});
   }
   Inbox inbox_{kServicer};
   Telecommands telecommands_;
-  Navigation navigation_;
+  TrunkNavigation measurements_;
+  NavigationSolution navigation_;
 };
 
 TEST_F(NavigationTest, StartsWithoutAStateAndTakesTheFirstMeasurement) {

@@ -9,7 +9,7 @@ namespace vbar::fsw::gnc::test {
 namespace {
 
 std::span<unsigned char> estimate_in(Article& article) {
-  return bytes_of(state_of(article).navigation_.trunk().trunk().estimate());
+  return bytes_of(state_of(article).measurements_.trunk().estimate());
 }
 
 TEST(StateIntegrity, AFlippedBitOfTheEstimateIsReportedAndCorrectedInTheNextStep) {
@@ -25,9 +25,8 @@ TEST(StateIntegrity, DamageToEstimateAndCopyIsAColdStart) {
   const std::span<unsigned char> estimate = estimate_in(article);
   flip(estimate[1000], 3);
   // The copy lies somewhere behind: the first place with the same bytes as the first two means.
-  const filter::RelativeNavigationFilter& trunk = state_of(article).navigation_.trunk().trunk();
-  const std::span<unsigned char> behind =
-      bytes_of(*(&trunk + 1), sizeof(TrunkNavigation) - sizeof(filter::RelativeNavigationFilter));
+  const filter::RelativeNavigationFilter& trunk = state_of(article).measurements_.trunk();
+  const std::span<unsigned char> behind = bytes_of(*(&trunk + 1), sizeof(TrunkNavigation) - sizeof(filter::RelativeNavigationFilter));
   const auto copy = std::search(behind.begin(), behind.end(), estimate.begin(), estimate.begin() + 16);
   ASSERT_NE(copy, behind.end());
   flip(*copy, 0);

@@ -102,7 +102,7 @@ TEST(Experiment1Mission, WaypointsAreThePapers) {
     EXPECT_EQ(mission.waypoints[k].index, static_cast<int>(k));
     EXPECT_EQ((mission.waypoints[k].time - mission.epoch).ns, static_cast<std::int64_t>(kPaper[k][0] * 3600e9));
     for (int i = 0; i < 6; ++i) EXPECT_EQ(mission.waypoints[k].a_roe_m(i), kPaper[k][i + 1]) << k << ' ' << i;
-    EXPECT_EQ(mission.waypoints[k].solver, Solver::kClosedForm);
+    EXPECT_EQ(mission.waypoints[k].solver, Solver{waypoint::kSolverClosedForm});
   }
   EXPECT_EQ(mission.end_time(), mission.waypoints.back().time);
 }

@@ -26,7 +26,7 @@ TEST(Experiment3Mission, WaypointsAreThePapers) {
     EXPECT_EQ(mission.waypoints[k].index, 8 + static_cast<int>(k));
     EXPECT_EQ((mission.waypoints[k].time - mission.epoch).ns, static_cast<std::int64_t>(kPaper[k][0] * 3600e9));
     for (int i = 0; i < 6; ++i) EXPECT_EQ(mission.waypoints[k].a_roe_m(i), kPaper[k][i + 1]) << k << ' ' << i;
-    EXPECT_EQ(mission.waypoints[k].solver, Solver::kKoenigDamico);
+    EXPECT_EQ(mission.waypoints[k].solver, Solver{waypoint::kSolverKoenigDamico});
   }
   // "the maneuver planner was initiated at t = 20 minutes"
   EXPECT_EQ(mission.guidance.configuration.planner_start_ns,

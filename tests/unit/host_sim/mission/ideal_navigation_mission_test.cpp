@@ -31,7 +31,8 @@ TEST(IdealNavigationMission, WaypointsAreThePapers) {
     EXPECT_EQ(waypoint.index, static_cast<int>(k));
     EXPECT_EQ((waypoint.time - mission.epoch).ns, static_cast<std::int64_t>(kPaperWaypoints[k][0] * 3600e9));
     for (int i = 0; i < 6; ++i) EXPECT_EQ(waypoint.a_roe_m(i), kPaperWaypoints[k][i + 1]) << k << ' ' << i;
-    EXPECT_EQ(waypoint.solver, k <= 7 ? Solver::kClosedForm : Solver::kKoenigDamico) << k;
+    EXPECT_EQ(waypoint.solver, k <= 7 ? Solver{waypoint::kSolverClosedForm} : Solver{waypoint::kSolverKoenigDamico})
+        << k;
   }
 }
 

@@ -96,8 +96,8 @@ EstimateRow estimate_of(const TruthRow& truth, std::int64_t step) {
   row.active_solver = leg <= 7 ? 0 : 1;
   row.waypoint_index = leg;
   row.planned_burns = 3;
-  row.koenig_damico_status = step > 2300 && step < 2320 ? 4 : 0;
-  row.least_squares_status = 13;
+  row.solver_status[place_of_status(waypoint::kSolverKoenigDamico)] = step > 2300 && step < 2320 ? 4 : 0;
+  row.solver_status[place_of_status(waypoint::kSolverLeastSquares)] = 13;
   row.safety_status = step == 1000 ? 12 : 0;
   row.planned_dv_mps = 0.1;
   row.passive_safety_distance_m = 0.3 * norm(truth.relative_position_rtn);
