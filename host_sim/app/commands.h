@@ -8,13 +8,6 @@
 
 namespace vbar::app {
 
-/// In a run folder: the mission file and the overrides it was flown with, one a line.
-inline constexpr const char* kMissionCopy = "mission.toml";
-inline constexpr const char* kOverridesCopy = "overrides.txt";
-
-/// In that of a branch: where it left another run.
-inline constexpr const char* kBranchCopy = "branch.txt";
-
 struct RunOptions {
   std::filesystem::path mission;
   std::filesystem::path out;           ///< empty: report::default_run_folder
