@@ -73,14 +73,6 @@ struct NewArticleOptions {
 /// installed package of vbar.
 int new_article_command(const NewArticleOptions& options);
 
-struct ServeOptions {
-  std::filesystem::path mission;
-  int stream = 3;                      ///< descriptor of the line, inherited
-  std::vector<std::string> overrides;  ///< "path=value"
-};
-/// A digital sensor of the mission for a run in another process.
-int serve_command(const ServeOptions& options);
-
 /// Keys whose path or meaning contains `word` (empty: all), or all as a page in Markdown.
 int keys_command(const std::string& word, bool markdown);
 int columns_command(const std::string& word, bool markdown);

@@ -14,7 +14,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "hil_drivers/testbeds.h"
 #include "host_sim/app/commands.h"
 #include "host_sim/app/connect_flight_computer.h"
 #include "host_sim/app/exit_codes.h"
@@ -27,6 +26,7 @@
 #include "host_sim/mission/data_file.h"
 #include "host_sim/report/run_lock.h"
 #include "host_sim/report/text_file.h"
+#include "host_sim/sensors/installed_testbeds.h"
 #include "host_sim/sensors/sensor_kinds.h"
 #include "host_sim/twins/flown_log.h"
 
