@@ -1,6 +1,6 @@
 #pragma once
 // A testbed: hardware, or an emulator of it that uses the same wire protocols, in the place of digital twins. A driver
-// is a folder beside this file, and one line in testbeds.cpp, or bench_kinds.cpp if it needs libraries of its own.
+// is a folder of hil_drivers, and one line in its testbeds.cpp, or bench_kinds.cpp if it needs libraries of its own.
 
 #include <filesystem>
 #include <functional>

@@ -6,7 +6,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "hil_drivers/testbeds.h"
 #include "host_sim/app/changed_telecommands.h"
 #include "host_sim/app/connect_flight_computer.h"
 #include "host_sim/app/flight_recorder.h"
@@ -19,6 +18,7 @@
 #include "host_sim/faults/faulty_source.h"
 #include "host_sim/faults/faulty_thruster.h"
 #include "host_sim/report/summarise.h"
+#include "host_sim/sensors/installed_testbeds.h"
 #include "host_sim/sensors/sensor_kinds.h"
 #include "host_sim/twins/packets_rejected.h"
 

@@ -33,7 +33,7 @@ int check_command(const CheckOptions& options) {
     passed = passed && run.passed;
     suites.push_back(std::move(run.suite));
   }
-  if (!options.junit.empty()) report::replace_text_file(options.junit, check::junit_xml(suites));
+  if (!options.junit.empty()) files::replace_text_file(options.junit, check::junit_xml(suites));
   return passed ? kDone : kLimitMissed;
 }
 

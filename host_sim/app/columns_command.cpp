@@ -6,12 +6,12 @@
 
 #include <fmt/core.h>
 
-#include "hil_drivers/testbeds.h"
 #include "host_sim/app/commands.h"
 #include "host_sim/app/exit_codes.h"
 #include "host_sim/mission/word_search.h"
 #include "host_sim/report/run_tables.h"
 #include "host_sim/report/words.h"
+#include "host_sim/sensors/installed_testbeds.h"
 #include "host_sim/sensors/sensor_kinds.h"
 
 namespace vbar::app {

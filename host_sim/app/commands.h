@@ -8,13 +8,6 @@
 
 namespace vbar::app {
 
-/// In a run folder: the mission file and the overrides it was flown with, one a line.
-inline constexpr const char* kMissionCopy = "mission.toml";
-inline constexpr const char* kOverridesCopy = "overrides.txt";
-
-/// In that of a branch: where it left another run.
-inline constexpr const char* kBranchCopy = "branch.txt";
-
 struct RunOptions {
   std::filesystem::path mission;
   std::filesystem::path out;           ///< empty: report::default_run_folder
@@ -79,14 +72,6 @@ struct NewArticleOptions {
 /// A project of the user's own flight software, which builds a shared library or an image for the Zynq-7000 with the
 /// installed package of vbar.
 int new_article_command(const NewArticleOptions& options);
-
-struct ServeOptions {
-  std::filesystem::path mission;
-  int stream = 3;                      ///< descriptor of the line, inherited
-  std::vector<std::string> overrides;  ///< "path=value"
-};
-/// A digital sensor of the mission for a run in another process.
-int serve_command(const ServeOptions& options);
 
 /// Keys whose path or meaning contains `word` (empty: all), or all as a page in Markdown.
 int keys_command(const std::string& word, bool markdown);

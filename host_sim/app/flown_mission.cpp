@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "host_sim/app/commands.h"
 #include "host_sim/app/connect_flight_computer.h"
 #include "host_sim/app/exit_codes.h"
 #include "host_sim/report/run_folder.h"

@@ -13,6 +13,13 @@
 
 namespace vbar::app {
 
+/// Files of a run folder: the mission file, and the overrides with which it was flown, one a line.
+inline constexpr const char* kMissionCopy = "mission.toml";
+inline constexpr const char* kOverridesCopy = "overrides.txt";
+
+/// File in the folder of a branch: where it left another run.
+inline constexpr const char* kBranchCopy = "branch.txt";
+
 /// "library" of "flight_computer.library=x" or "spacecraft.servicer.flight_computer.library=x"; empty for another key.
 [[nodiscard]] std::string_view flight_computer_key(std::string_view assignment);
 

@@ -5,7 +5,6 @@
 #include <fmt/core.h>
 #include <fmt/format.h>
 
-#include "host_sim/app/commands.h"
 #include "host_sim/app/exit_codes.h"
 #include "host_sim/app/flown_mission.h"
 #include "host_sim/check/limit_check.h"
@@ -55,7 +54,7 @@ CheckedRun checked_by(const fs::path& folder, const campaign::Json& summary,
 campaign::Json summary_json_of(const fs::path& run) {
   const fs::path file = report::summary_file(run);
   try {
-    return campaign::Json::parse(report::read_text_file(file));
+    return campaign::Json::parse(files::read_text_file(file));
   } catch (const std::exception& error) {
     throw Refused(fmt::format("{}: not the summary of a run: {}", file.string(), error.what()));
   }

@@ -15,6 +15,7 @@
 #include <fcntl.h>
 #include <fmt/core.h>
 
+#include "hil_drivers/external/serve_command.h"
 #include "hil_drivers/testbeds.h"
 #include "host_sim/app/build_info.h"
 #include "host_sim/app/campaign_command.h"
@@ -269,14 +270,14 @@ int execute(int argc, char** argv) {
   article_app->add_option("--language", article.language, "c or c++ (default c)");
   article_app->callback([&] { exit_code = new_article_command(article); });
 
-  ServeOptions serve;
+  vbar::external::ServeOptions serve;
   CLI::App* serve_app = program.add_subcommand(
       "serve",
       "be a digital sensor, or the truth, of a run that has it as testbed.external (docs/external_sources.md)");
   serve_app->add_option("mission", serve.mission, kMissionHelp)->required();
   serve_app->add_option("--stream", serve.stream, "descriptor of the line, inherited")->check(integer_from(0));
   add_set(serve_app, serve.overrides);
-  serve_app->callback([&] { exit_code = serve_command(serve); });
+  serve_app->callback([&] { exit_code = vbar::external::serve_command(serve, build_version()); });
 
   add_completion_command(program, exit_code);
 
@@ -289,5 +290,6 @@ int execute(int argc, char** argv) {
 int main(int argc, char** argv) {
   open_standard_descriptors();
   keep_output_until_end();
+  vbar::testbeds::install(vbar::testbeds::drivers());
   return execute(argc, argv);
 }

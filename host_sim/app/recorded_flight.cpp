@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
-#include "host_sim/app/commands.h"
 #include "host_sim/app/connect_flight_computer.h"
 #include "host_sim/app/exit_codes.h"
 #include "host_sim/app/flown_from.h"
+#include "host_sim/app/flown_mission.h"
 #include "host_sim/app/mission_verdict.h"
 #include "host_sim/app/packet_keepers.h"
 #include "host_sim/app/progress.h"
@@ -40,13 +40,13 @@ report::Summary start_of(const mission::Mission& mission) {
 /// The mission as it was flown, for a replay and a resume. Its file is the last one: where it is, the others are too.
 void keep_mission(const FlightOrder& order, const std::filesystem::path& folder) {
   std::filesystem::remove(folder / kMissionCopy);
-  report::replace_text_file(folder / kOverridesCopy, fmt::format("{}\n", fmt::join(order.overrides, "\n")));
+  files::replace_text_file(folder / kOverridesCopy, fmt::format("{}\n", fmt::join(order.overrides, "\n")));
   if (order.branch.empty()) {
     std::filesystem::remove(folder / kBranchCopy);
   } else {
-    report::replace_text_file(folder / kBranchCopy, order.branch);
+    files::replace_text_file(folder / kBranchCopy, order.branch);
   }
-  report::replace_text_file(folder / kMissionCopy, order.mission_text);
+  files::replace_text_file(folder / kMissionCopy, order.mission_text);
 }
 
 /// Flies and fills the record. The reason why the run is not complete, or nothing.

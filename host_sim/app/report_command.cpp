@@ -4,7 +4,6 @@
 
 #include <fmt/core.h>
 
-#include "hil_drivers/testbeds.h"
 #include "host_sim/app/commands.h"
 #include "host_sim/app/exit_codes.h"
 #include "host_sim/report/compare_report.h"
@@ -14,6 +13,7 @@
 #include "host_sim/report/summarise.h"
 #include "host_sim/report/verdict.h"
 #include "host_sim/report/waypoint_table.h"
+#include "host_sim/sensors/installed_testbeds.h"
 #include "host_sim/sensors/sensor_kinds.h"
 
 namespace vbar::app {

@@ -14,7 +14,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "hil_drivers/testbeds.h"
 #include "host_sim/app/commands.h"
 #include "host_sim/app/connect_flight_computer.h"
 #include "host_sim/app/exit_codes.h"
@@ -27,6 +26,7 @@
 #include "host_sim/mission/data_file.h"
 #include "host_sim/report/run_lock.h"
 #include "host_sim/report/text_file.h"
+#include "host_sim/sensors/installed_testbeds.h"
 #include "host_sim/sensors/sensor_kinds.h"
 #include "host_sim/twins/flown_log.h"
 
@@ -87,7 +87,7 @@ std::string text_of(const BranchPoint& point) {
 std::optional<BranchPoint> branch_point(const FlownRun& run) {
   const fs::path file = run.folder / kBranchCopy;
   if (!fs::exists(file)) return std::nullopt;
-  const std::string text = report::read_text_file(file);
+  const std::string text = files::read_text_file(file);
   double at_h = 0.0;
   std::size_t changes = 0;
   int end = 0;
@@ -173,7 +173,7 @@ class Comparison {
 /// The log of a run; one without any event if the run was killed before its first step.
 twins::FlownLog log_of(const FlownRun& run) {
   const fs::path file = report::packet_log_file(run.folder);
-  if (!fs::exists(file)) report::replace_text_file(file, "");
+  if (!fs::exists(file)) files::replace_text_file(file, "");
   twins::FlownLog log(file);
   const auto& written = run.summary.provenance.packet_log;
   if (written && log.has_end() && report::digest_of(file)->sha256 != written->sha256)
@@ -198,7 +198,7 @@ int continue_run(const ResumeOptions& options, const FlownRun& run, twins::Flown
   const std::optional<BranchPoint> branch = branch_point(run);
   Comparison comparison(run, log, options.quiet);
   const FlightOrder order{run.mission,
-                          report::read_text_file(run.folder / kMissionCopy),
+                          files::read_text_file(run.folder / kMissionCopy),
                           run.overrides,
                           options.quiet,
                           branch ? text_of(*branch) : "",
@@ -236,7 +236,7 @@ int fly_branch(const ResumeOptions& options, const FlownRun& run, twins::FlownLo
   }
   log.compare_before(point.time());
   Comparison comparison(run, log, options.quiet);
-  const FlightOrder order{mission,        report::read_text_file(run.folder / kMissionCopy),
+  const FlightOrder order{mission,        files::read_text_file(run.folder / kMissionCopy),
                           overrides,      options.quiet,
                           text_of(point), std::ref(comparison)};
   std::unique_ptr<AssembledMission> assembled;

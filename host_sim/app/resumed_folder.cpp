@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "host_sim/app/commands.h"
+#include "host_sim/app/flown_mission.h"
 #include "host_sim/files/remove_link.h"
 #include "host_sim/report/run_folder.h"
 #include "host_sim/report/run_lock.h"
@@ -52,7 +52,7 @@ std::set<std::string> names_of_run_files() {
   std::set<std::string> names{report::RunLock::kFile};
   for (const std::string& file : {report::summary_file("").string(), std::string(kMissionCopy),
                                   std::string(kOverridesCopy), std::string(kBranchCopy)})
-    names.insert({file, report::neighbour_of(file).string()});
+    names.insert({file, files::neighbour_of(file).string()});
   for (const std::string& file : report::flight_files(sensors::extensions())) names.insert(file);
   return names;
 }
@@ -70,7 +70,7 @@ void keep_other_files(const fs::path& from, const fs::path& to) {
 bool is_same_mission(const fs::path& a, const fs::path& b) {
   return std::ranges::all_of(std::array{kMissionCopy, kOverridesCopy}, [&](const char* file) {
     return fs::exists(a / file) && fs::exists(b / file) &&
-           report::read_text_file(a / file) == report::read_text_file(b / file);
+           files::read_text_file(a / file) == files::read_text_file(b / file);
   });
 }
 

@@ -64,7 +64,7 @@ bool is_of_the_computer(const std::string& reason) {
 
 Json read_summary_of(const fs::path& run_folder) {
   try {
-    return Json::parse(report::read_text_file(report::summary_file(run_folder)), nullptr, false);
+    return Json::parse(files::read_text_file(report::summary_file(run_folder)), nullptr, false);
   } catch (const std::runtime_error&) {
     return nullptr;
   }

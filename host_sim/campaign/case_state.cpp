@@ -58,7 +58,7 @@ Standing read_standing(const Folder& folder) {
   folder.require_campaign();
   Standing standing;
   standing.plan = read_plan(folder.plan());
-  if (files::sha256_of(report::read_text_file(folder.cases())) != standing.plan.cases_sha256)
+  if (files::sha256_of(files::read_text_file(folder.cases())) != standing.plan.cases_sha256)
     throw std::runtime_error(folder.cases().string() +
                              ": differs from the table that the campaign began with (SHA-256); restore it, or begin a "
                              "new campaign");

@@ -116,7 +116,7 @@ void write_results(const Folder& folder, const Standing& standing) {
   for (const auto& [number, result] : standing.results.of_case)
     if (!result.folder.empty() && !std::filesystem::is_directory(folder.root() / result.folder, error))
       missing.insert(result.folder);
-  report::replace_text_file(folder.results(), text_with(standing, missing));
+  files::replace_text_file(folder.results(), text_with(standing, missing));
 }
 
 }  // namespace vbar::campaign

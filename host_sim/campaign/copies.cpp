@@ -72,13 +72,13 @@ void make_copies(const Folder& folder, const UsedFiles& used, const std::string&
   copy_data(folder);
   const fs::path mission = folder.root() / copy_of_mission(used.mission);
   fs::create_directories(mission.parent_path());
-  report::replace_text_file(mission, mission_text);
+  files::replace_text_file(mission, mission_text);
   for (const fs::path& file : used.beside_mission) copy_one(file, folder.mission_files() / file.relative_path());
   // The program finds images by their places relative to its own.
   for (const fs::path& image : used.flight_images)
     copy_one(image,
              (folder.program().parent_path() / image.lexically_relative(program.parent_path())).lexically_normal());
-  report::replace_text_file(folder.checksums(), checksums_of(folder));
+  files::replace_text_file(folder.checksums(), checksums_of(folder));
 }
 
 void check_copies(const Folder& folder) {

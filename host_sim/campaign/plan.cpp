@@ -126,7 +126,7 @@ std::string plan_json(const Plan& plan) {
 }
 
 Plan read_plan(const std::filesystem::path& file) {
-  const std::string text = report::read_text_file(file);
+  const std::string text = files::read_text_file(file);
   try {
     return plan_of_json(Json::parse(text));
   } catch (const std::exception& error) {

@@ -143,15 +143,15 @@ void prepare(const CampaignFile& campaign, const Folder& folder, const std::stri
     fs::create_directories(inner);
   const std::string table = cases_text(plan.keys, cases);
   plan.cases_sha256 = files::sha256_of(table);
-  report::replace_text_file(folder.cases(), table);
-  report::replace_text_file(folder.campaign_copy(), report::read_text_file(campaign.file));
-  report::replace_text_file(folder.plan(), plan_json(plan));  // last: from now on the folder holds a campaign
+  files::replace_text_file(folder.cases(), table);
+  files::replace_text_file(folder.campaign_copy(), files::read_text_file(campaign.file));
+  files::replace_text_file(folder.plan(), plan_json(plan));  // last: from now on the folder holds a campaign
 }
 
 bool holds_same_campaign(const Folder& folder, const fs::path& file) {
   std::error_code error;
   return fs::is_regular_file(folder.plan(), error) && fs::is_regular_file(folder.campaign_copy(), error) &&
-         report::read_text_file(folder.campaign_copy()) == report::read_text_file(file);
+         files::read_text_file(folder.campaign_copy()) == files::read_text_file(file);
 }
 
 }  // namespace vbar::campaign

@@ -70,7 +70,7 @@ bool is_being_written(const std::filesystem::path& file) {
 }
 
 ReadLines read_lines_of(const std::filesystem::path& file) {
-  const std::string text = report::read_text_file(file);
+  const std::string text = files::read_text_file(file);
   ReadLines read;
   for (std::string_view rest = text; !rest.empty();) {
     const std::size_t end = rest.find('\n');

@@ -134,7 +134,7 @@ fs::path write_todo(const Folder& folder, const std::vector<Case>& cases) {
   const fs::path file = folder.submissions() / (new_worker_name("todo") + ".txt");
   std::string text;
   for (const Case& one : cases) text += fmt::format("{}\n", one.number);
-  report::replace_text_file(file, text);
+  files::replace_text_file(file, text);
   return file;
 }
 

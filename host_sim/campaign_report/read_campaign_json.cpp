@@ -107,7 +107,7 @@ std::optional<Requirement> requirement_of(const Object& object, const std::strin
 
 Json parsed(const std::filesystem::path& file) {
   try {
-    return Json::parse(report::read_text_file(file));
+    return Json::parse(files::read_text_file(file));
   } catch (const Json::exception& error) {
     throw std::runtime_error(fmt::format("{}: not a JSON file: {}", file.string(), error.what()));
   }

@@ -27,7 +27,7 @@ std::filesystem::path write_page(const std::filesystem::path& folder) {
   const std::filesystem::path whole = std::filesystem::absolute(folder).lexically_normal();
   const std::filesystem::path name = whole.has_filename() ? whole.filename() : whole.parent_path().filename();
   std::filesystem::path page = folder / "campaign.html";
-  report::replace_text_file(page, campaign_report::page_of(campaign, name.string()));
+  files::replace_text_file(page, campaign_report::page_of(campaign, name.string()));
   return page;
 }
 

@@ -1,51 +1,46 @@
 #include "host_sim/check/junit_xml.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <sstream>
 
-#include <boost/property_tree/ptree.hpp>
-#include <boost/property_tree/xml_parser.hpp>
 #include <fmt/format.h>
+#include <pugixml.hpp>
 
 namespace vbar::check {
 namespace {
 
-using Tree = boost::property_tree::ptree;
-
-std::size_t failures_of(const JunitSuite& suite) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(suite.cases, [](const JunitCase& one) { return !one.failure.empty(); }));
+long long failures_of(const JunitSuite& suite) {
+  return std::ranges::count_if(suite.cases, [](const JunitCase& one) { return !one.failure.empty(); });
 }
 
-Tree tree_of(const JunitCase& one, const std::string& suite) {
-  Tree tree;
-  tree.put("<xmlattr>.classname", suite);
-  tree.put("<xmlattr>.name", one.name);
-  if (!one.failure.empty()) tree.put("failure.<xmlattr>.message", one.failure);
-  return tree;
+void add(pugi::xml_node& parent, const JunitCase& one, const std::string& suite) {
+  pugi::xml_node node = parent.append_child("testcase");
+  node.append_attribute("classname") = suite.c_str();
+  node.append_attribute("name") = one.name.c_str();
+  if (!one.failure.empty()) node.append_child("failure").append_attribute("message") = one.failure.c_str();
 }
 
-Tree tree_of(const JunitSuite& suite) {
-  Tree tree;
-  tree.put("<xmlattr>.name", suite.name);
-  tree.put("<xmlattr>.tests", suite.cases.size());
-  tree.put("<xmlattr>.failures", failures_of(suite));
-  tree.put("<xmlattr>.errors", 0);
-  tree.put("<xmlattr>.time", fmt::format("{:.3f}", suite.duration_s));
-  for (const JunitCase& one : suite.cases) tree.add_child("testcase", tree_of(one, suite.name));
-  return tree;
+void add(pugi::xml_node& parent, const JunitSuite& suite) {
+  pugi::xml_node node = parent.append_child("testsuite");
+  node.append_attribute("name") = suite.name.c_str();
+  node.append_attribute("tests") = static_cast<unsigned long long>(suite.cases.size());
+  node.append_attribute("failures") = failures_of(suite);
+  node.append_attribute("errors") = 0;
+  node.append_attribute("time") = fmt::format("{:.3f}", suite.duration_s).c_str();
+  for (const JunitCase& one : suite.cases) add(node, one, suite.name);
 }
 
 }  // namespace
 
 std::string junit_xml(const std::vector<JunitSuite>& suites) {
-  Tree all;
-  for (const JunitSuite& suite : suites) all.add_child("testsuite", tree_of(suite));
-  Tree document;
-  document.add_child("testsuites", all);
+  pugi::xml_document document;
+  pugi::xml_node declaration = document.append_child(pugi::node_declaration);
+  declaration.append_attribute("version") = "1.0";
+  declaration.append_attribute("encoding") = "utf-8";
+  pugi::xml_node all = document.append_child("testsuites");
+  for (const JunitSuite& suite : suites) add(all, suite);
   std::ostringstream text;
-  boost::property_tree::write_xml(text, document, boost::property_tree::xml_writer_make_settings<std::string>(' ', 2));
+  document.save(text, "  ");
   return text.str();
 }
 

@@ -135,7 +135,7 @@ std::string html_comparison(Runs runs) {
 }
 
 void write_html_comparison(const std::filesystem::path& file, Runs runs) {
-  replace_text_file(file, html_comparison(runs));
+  files::replace_text_file(file, html_comparison(runs));
 }
 
 }  // namespace vbar::report

@@ -73,7 +73,7 @@ std::optional<int> code_of(const Codes& codes, std::string_view word) {
 }
 
 std::vector<std::string> read_lines(const std::filesystem::path& file) {
-  const std::string text = read_text_file(file);
+  const std::string text = files::read_text_file(file);
   std::vector<std::string> lines;
   for (std::size_t start = 0; start < text.size();) {
     const std::size_t end = std::min(text.find('\n', start), text.size());

@@ -18,7 +18,7 @@ class EphemerisCsv {
   void finish() { file_.finish(); }
 
  private:
-  PartialFile file_;
+  files::PartialFile file_;
 };
 
 }  // namespace vbar::report

@@ -29,7 +29,7 @@ std::string html_report(const RunRecord& record) {
 
 std::filesystem::path write_html_report(const std::filesystem::path& run_folder, const RunRecord& record) {
   std::filesystem::path file = report_file(run_folder);
-  replace_text_file(file, html_report(record));
+  files::replace_text_file(file, html_report(record));
   return file;
 }
 

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <iterator>
 
-#include "host_sim/report/section_parts.h"
-
 namespace vbar::report {
 
 std::vector<ManeuverRow> executed_in_order(const RunRecord& record) {

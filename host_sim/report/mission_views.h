@@ -8,6 +8,12 @@
 
 namespace vbar::report {
 
+inline constexpr double kSecondsPerHour = 3600.0;
+
+inline double hours(double seconds) {
+  return seconds / kSecondsPerHour;
+}
+
 struct View {
   std::string name;  ///< e.g. "waypoints 4 to 8"
   double start_s = 0.0, end_s = 0.0;

@@ -31,7 +31,7 @@ class OemFile {
   void finish() { file_.finish(); }
 
  private:
-  PartialFile file_;
+  files::PartialFile file_;
 };
 
 }  // namespace vbar::report

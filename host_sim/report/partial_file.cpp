@@ -7,10 +7,10 @@
 #include "host_sim/files/remove_link.h"
 #include "host_sim/files/write_error.h"
 
-namespace vbar::report {
+namespace vbar::files {
 
 PartialFile::PartialFile(std::filesystem::path file) : file_(std::move(file)) {
-  files::remove_link(part_of(file_));
+  remove_link(part_of(file_));
   errno = 0;
   stream_.open(part_of(file_), std::ios::binary | std::ios::trunc);
   if (!stream_) fail();
@@ -41,7 +41,7 @@ std::filesystem::path PartialFile::part_of(const std::filesystem::path& file) {
 }
 
 void PartialFile::fail() const {
-  throw files::write_error(file_);
+  throw write_error(file_);
 }
 
-}  // namespace vbar::report
+}  // namespace vbar::files

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <string_view>
 
-namespace vbar::report {
+namespace vbar::files {
 
 class PartialFile {
  public:
@@ -33,4 +33,4 @@ class PartialFile {
   std::ofstream stream_;
 };
 
-}  // namespace vbar::report
+}  // namespace vbar::files

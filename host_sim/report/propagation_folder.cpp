@@ -25,7 +25,7 @@ constexpr const char* kSummary = "propagation.json";
 std::vector<std::string> files_left(const fs::path& folder) {
   if (!fs::is_regular_file(folder / kSummary))
     fail(folder, "holds something other than a propagation; remove it or name another folder with --out");
-  const auto json = nlohmann::json::parse(read_text_file(folder / kSummary), nullptr, false);
+  const auto json = nlohmann::json::parse(files::read_text_file(folder / kSummary), nullptr, false);
   if (!json.is_object() || !json.contains("files")) fail(folder / kSummary, "is not that of a propagation");
   return json.at("files").get<std::vector<std::string>>();
 }
@@ -37,7 +37,7 @@ void clear(const fs::path& folder) {
   for (const std::string& name : files_left(folder)) {
     if (fs::path(name).filename() != name) fail(folder / kSummary, "lists a file outside its folder");
     fs::remove(folder / name);
-    fs::remove(PartialFile::part_of(folder / name));
+    fs::remove(files::PartialFile::part_of(folder / name));
   }
 }
 
@@ -57,7 +57,7 @@ PropagationFolder::PropagationFolder(fs::path folder, const std::string& mission
   PropagationRecord running;
   running.mission = mission;
   running.incomplete_reason = "running";
-  replace_text_file(folder_ / kSummary, propagation_json(running, file_names_));
+  files::replace_text_file(folder_ / kSummary, propagation_json(running, file_names_));
 }
 
 void PropagationFolder::start_files(std::span<const std::string> names, const OemFile::Span* oem) {
@@ -82,7 +82,7 @@ void PropagationFolder::finish(const PropagationRecord& record) {
   }
   csv_.clear();  // parts are closed, and so whole up to where they end
   oem_.clear();
-  replace_text_file(folder_ / kSummary, propagation_json(record, file_names_));
+  files::replace_text_file(folder_ / kSummary, propagation_json(record, file_names_));
 }
 
 }  // namespace vbar::report

@@ -50,11 +50,11 @@ fs::path picture_file(const fs::path& folder, const GalleryImage& image, std::st
 }
 
 void write_picture(const fs::path& file, const std::vector<std::uint8_t>& png) {
-  replace_text_file(file, std::string(png.begin(), png.end()));
+  files::replace_text_file(file, std::string(png.begin(), png.end()));
 }
 
 std::vector<std::uint8_t> read_picture(const fs::path& file) {
-  const std::string bytes = read_text_file(file);
+  const std::string bytes = files::read_text_file(file);
   return {bytes.begin(), bytes.end()};
 }
 
@@ -101,7 +101,7 @@ std::vector<std::string> flight_files(Extensions extensions) {
   std::vector<std::string> whole = table_files(extensions);
   whole.emplace_back(kReport);
   for (const std::string& name : whole)
-    names.insert(names.end(), {name, PartialFile::part_of(name).string(), neighbour_of(name).string()});
+    names.insert(names.end(), {name, files::PartialFile::part_of(name).string(), files::neighbour_of(name).string()});
   return names;
 }
 
@@ -115,7 +115,7 @@ RunFolder::RunFolder(fs::path folder, const Summary& start, Existing existing, E
     Summary running = start;
     running.complete = false;
     running.incomplete_reason = fmt::format("running in process {}, or killed", ::getpid());
-    replace_text_file(folder_ / kSummary, summary_json(running, {}));
+    files::replace_text_file(folder_ / kSummary, summary_json(running, {}));
     for (const std::string& name : flight_files(extensions)) fs::remove_all(folder_ / name);
     keep_room_for_summary();
   } catch (const fs::filesystem_error& error) {
@@ -126,7 +126,7 @@ RunFolder::RunFolder(fs::path folder, const Summary& start, Existing existing, E
 /// In the neighbour from which the last summary takes its name: what fills the disk in flight leaves room to say so.
 void RunFolder::keep_room_for_summary() const {
   constexpr off_t kRoom = 128 * 1024;  // several summaries of a long mission
-  const fs::path neighbour = neighbour_of(folder_ / kSummary);
+  const fs::path neighbour = files::neighbour_of(folder_ / kSummary);
   files::remove_link(neighbour);
   const int descriptor = ::open(neighbour.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0644);
   if (descriptor < 0) return;
@@ -145,14 +145,14 @@ void RunFolder::finish(const RunRecord& record) {
     write_pictures(folder_, record.gallery);
     tables_.finish(record);
   }
-  replace_text_file(folder_ / kSummary, summary_json(record.summary, record.waypoints));
+  files::replace_text_file(folder_ / kSummary, summary_json(record.summary, record.waypoints));
 }
 
 void RunFolder::give_up(Summary summary, const std::string& reason) const {
   summary.complete = false;
   summary.incomplete_reason = reason;
   try {
-    replace_text_file(folder_ / kSummary, summary_json(summary, {}));
+    files::replace_text_file(folder_ / kSummary, summary_json(summary, {}));
   } catch (const std::runtime_error&) {
     // The summary of the start is whole.
   }
@@ -164,7 +164,7 @@ RunRecord read_run(const fs::path& run_folder, Extensions extensions) {
   record.extensions = extensions;
   record.summary = read_summary(run_folder / kSummary);
   const fs::path truth = run_folder / "truth.csv";
-  if (!record.summary.complete && !fs::exists(truth) && !fs::exists(PartialFile::part_of(truth))) {
+  if (!record.summary.complete && !fs::exists(truth) && !fs::exists(files::PartialFile::part_of(truth))) {
     fail(run_folder,
          fmt::format("the run did not end (it says \"{}\") and left no tables", record.summary.incomplete_reason));
   }

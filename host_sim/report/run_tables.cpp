@@ -144,7 +144,7 @@ std::vector<CellSource> sources_of(const fs::path& file, const TableKind& table,
 /// `cut_short`: the last line may be half a row, for the program was killed.
 void read_rows(const fs::path& file, const TableKind& table, bool cut_short, RunRecord& record) {
   Names lines = read_lines(file);
-  if (cut_short && !lines.empty() && !read_text_file(file).ends_with('\n')) lines.pop_back();
+  if (cut_short && !lines.empty() && !files::read_text_file(file).ends_with('\n')) lines.pop_back();
   if (lines.empty()) fail(file, 1, "the file is empty: not even column names");
   Names head, cells;
   if (!split_cells(lines.front(), head)) fail(file, 1, "a quote is not closed");
@@ -181,7 +181,7 @@ std::string table_text(const RunRecord& record, const std::string& name) {
 
 void TableWriter::append(const TableKind& table, const RunRecord& record) {
   const bool is_new = !growing_.contains(table.file);
-  if (is_new) growing_.emplace(table.file, Growing{PartialFile(folder_ / table.file)});
+  if (is_new) growing_.emplace(table.file, Growing{files::PartialFile(folder_ / table.file)});
   Growing& growing = growing_.at(table.file);
   std::string text = is_new ? head_line(table) : "";
   append_rows(text, table, record, growing.rows);
@@ -193,7 +193,7 @@ void TableWriter::update(const RunRecord& record) {
   for (const TableKind& table : tables_with(record.extensions)) {
     if (table.count(record) == 0) continue;
     if (table.rows == Rows::kChange) {
-      replace_text_file(PartialFile::part_of(folder_ / table.file), text_of(table, record));
+      files::replace_text_file(files::PartialFile::part_of(folder_ / table.file), text_of(table, record));
       continue;
     }
     append(table, record);
@@ -204,10 +204,10 @@ void TableWriter::update(const RunRecord& record) {
 void TableWriter::finish(const RunRecord& record) {
   for (const TableKind& table : tables_with(record.extensions)) {
     const bool changes = table.rows == Rows::kChange;
-    if (changes) fs::remove(PartialFile::part_of(folder_ / table.file));
+    if (changes) fs::remove(files::PartialFile::part_of(folder_ / table.file));
     if (table.count(record) == 0 && table.presence == Presence::kIfNotEmpty) continue;
     if (changes) {
-      replace_text_file(folder_ / table.file, text_of(table, record));
+      files::replace_text_file(folder_ / table.file, text_of(table, record));
       continue;
     }
     append(table, record);
@@ -221,7 +221,7 @@ void read_tables(const fs::path& folder, RunRecord& record) {
   for (const TableKind& table : tables_with(record.extensions)) {
     fs::path file = folder / table.file;
     const bool is_part = !complete && !fs::exists(file);
-    if (is_part) file = PartialFile::part_of(file);
+    if (is_part) file = files::PartialFile::part_of(file);
     if ((is_part || table.presence == Presence::kIfNotEmpty) && !fs::exists(file)) continue;
     read_rows(file, table, is_part, record);
   }

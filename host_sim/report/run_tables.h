@@ -48,7 +48,7 @@ class TableWriter {
 
  private:
   struct Growing {
-    PartialFile file;
+    files::PartialFile file;
     std::size_t rows = 0;
   };
   void append(const TableKind& table, const RunRecord& record);

@@ -37,9 +37,9 @@ Plot size_plot(const std::vector<ManeuverRow>& executed, const View& view) {
   return plot;
 }
 
-const std::vector<Column> kColumns{{"id"},          {"leg to waypoint"}, {"solver", false}, {"commanded, h"},
-                                   {"executed, h"}, {"dv R, mm/s"},      {"dv T, mm/s"},    {"dv N, mm/s"},
-                                   {"|dv|, mm/s"},  {"outcome", false}};
+const std::vector<Column> kManeuverColumns{{"id"},          {"leg to waypoint"}, {"solver", false}, {"commanded, h"},
+                                           {"executed, h"}, {"dv R, mm/s"},      {"dv T, mm/s"},    {"dv N, mm/s"},
+                                           {"|dv|, mm/s"},  {"outcome", false}};
 
 std::vector<std::string> cells(const ManeuverRow& row) {
   const Triple& dv = row.accepted ? row.executed_dv_rtn_mps : row.commanded_dv_rtn_mps;
@@ -74,7 +74,7 @@ Section maneuver_section(const RunRecord& record) {
               (thrust.empty() ? "" : fmt::format("<p>{}</p>\n", escaped(thrust))) +
               plot_rows(2, std::move(cumulative)) + plot_rows(1, {size_plot(executed, whole)}, 1) +
               fmt::format("<details><summary>All {} maneuvers, in the servicer's RTN frame</summary>", rows.size()) +
-              table(kColumns, rows) + "</details>\n",
+              table(kManeuverColumns, rows) + "</details>\n",
           {"maneuvers.csv"}};
 }
 

@@ -15,12 +15,6 @@
 
 namespace vbar::report {
 
-inline constexpr double kSecondsPerHour = 3600.0;
-
-inline double hours(double seconds) {
-  return seconds / kSecondsPerHour;
-}
-
 inline constexpr std::array<const char*, 6> kElementNames{"aδa", "aδλ", "aδex", "aδey", "aδix", "aδiy"};
 
 /// Mean elements scatter by millimetres; a smaller range would show nothing else.

@@ -8,14 +8,14 @@
 namespace vbar::report {
 namespace {
 
-const std::vector<Column> kColumns{{"waypoint"},
-                                   {"time, h"},
-                                   {"control error, m"},
-                                   {"navigation error, m"},
-                                   {"navigation velocity error, mm/s"},
-                                   {"delta-v of leg, m/s"},
-                                   {"cumulative delta-v, m/s"},
-                                   {"maneuvers in leg"}};
+const std::vector<Column> kWaypointColumns{{"waypoint"},
+                                           {"time, h"},
+                                           {"control error, m"},
+                                           {"navigation error, m"},
+                                           {"navigation velocity error, mm/s"},
+                                           {"delta-v of leg, m/s"},
+                                           {"cumulative delta-v, m/s"},
+                                           {"maneuvers in leg"}};
 
 std::string name_of(const RunRecord& record, const WaypointRow& row) {
   return fmt::format("{}{}", row.index, is_start(record, row) ? " (start)" : "");
@@ -64,7 +64,7 @@ Section waypoint_section(const RunRecord& record) {
     roe_rows.push_back(roe_cells(name_of(record, row), "true", row.a_roe_actual_m));
   }
   const Summary& s = record.summary;
-  std::string out = table(kColumns, rows);
+  std::string out = table(kWaypointColumns, rows);
   if (reached_waypoints(record).empty()) out += "<p>No waypoint was reached after the start.</p>\n";
   const char* const over = s.first_fix_s ? "from the first fix on" : "over all steps";
   out += mean_and_deviation("Navigation error", s.navigation_error_m, 1.0, "m", over);

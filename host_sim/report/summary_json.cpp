@@ -319,7 +319,7 @@ std::string summary_json(const Summary& summary, const std::vector<WaypointRow>&
 }
 
 Summary read_summary(const std::filesystem::path& file) {
-  const std::string content = read_text_file(file);
+  const std::string content = files::read_text_file(file);
   const auto fail = [&](const char* what) {
     throw std::runtime_error(file.string() + ": not a run's summary: " + what);
   };
@@ -345,7 +345,7 @@ Summary read_summary(const std::filesystem::path& file) {
 
 bool is_summary(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) return false;
-  const Json json = Json::parse(read_text_file(file), nullptr, false);
+  const Json json = Json::parse(files::read_text_file(file), nullptr, false);
   return json.is_object() && json.contains("mission") && json.contains("complete") && json.contains("commands_sha256");
 }
 

@@ -9,7 +9,7 @@
 #include "host_sim/files/remove_link.h"
 #include "host_sim/files/write_error.h"
 
-namespace vbar::report {
+namespace vbar::files {
 
 std::string read_text_file(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) throw std::runtime_error(file.string() + ": no such file");
@@ -25,7 +25,7 @@ std::filesystem::path neighbour_of(const std::filesystem::path& file) {
 
 void replace_text_file(const std::filesystem::path& file, std::string_view text) {
   const std::filesystem::path neighbour = neighbour_of(file);
-  files::remove_link(neighbour);
+  remove_link(neighbour);
   errno = 0;
   std::ofstream stream(neighbour, std::ios::binary | std::ios::trunc);
   stream.write(text.data(), static_cast<std::streamsize>(text.size()));
@@ -33,11 +33,11 @@ void replace_text_file(const std::filesystem::path& file, std::string_view text)
   std::error_code error;
   if (stream) std::filesystem::rename(neighbour, file, error);
   if (!stream || error) {
-    const std::runtime_error reason = files::write_error(file);
+    const std::runtime_error reason = write_error(file);
     std::error_code ignored;
     std::filesystem::remove(neighbour, ignored);
     throw reason;
   }
 }
 
-}  // namespace vbar::report
+}  // namespace vbar::files

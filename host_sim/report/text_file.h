@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace vbar::report {
+namespace vbar::files {
 
 /// Throws std::runtime_error that names the file.
 [[nodiscard]] std::string read_text_file(const std::filesystem::path& file);
@@ -17,4 +17,4 @@ namespace vbar::report {
 /// the file; what was there before then still is.
 void replace_text_file(const std::filesystem::path& file, std::string_view text);
 
-}  // namespace vbar::report
+}  // namespace vbar::files

@@ -17,7 +17,7 @@ constexpr double kTop = 6.0;
 constexpr double kRowHeight = 24.0;
 constexpr double kBottom = 40.0;
 constexpr double kLeastBand = 1.2;  // pixels: a single step of a long run can still be seen
-constexpr double kCharacterWidth = 6.0;
+constexpr double kLabelCharacterWidth = 6.0;
 
 }  // namespace
 
@@ -47,7 +47,7 @@ std::string timeline(const std::vector<TimelineRow>& rows, const Range& hours) {
                      "<title>{}, {:.2f} h to {:.2f} h</title></rect>",
                      band.colour, pixel(band.start_h), y + 3.0, width, kRowHeight - 6.0, escaped(band.text),
                      band.start_h, band.end_h);
-      if (width < kCharacterWidth * static_cast<double>(band.text.size()) + 6.0) continue;
+      if (width < kLabelCharacterWidth * static_cast<double>(band.text.size()) + 6.0) continue;
       fmt::format_to(append, R"(<text x="{:.1f}" y="{:g}">{}</text>)", pixel(band.start_h) + 4.0, y + 16.0,
                      escaped(band.text));
     }

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "hil_drivers/testbeds.h"
+#include "host_sim/sensors/installed_testbeds.h"
 #include "host_sim/sensors/sensor_kinds.h"
 
 namespace vbar::sensors {

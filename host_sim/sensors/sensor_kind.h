@@ -14,10 +14,10 @@
 
 #include "fsw/orbit/elements.h"
 #include "fsw/packets/messages.h"
-#include "hil_drivers/testbeds.h"
 #include "host_sim/mission/sensor_reader.h"
 #include "host_sim/report/extension.h"
 #include "host_sim/sensors/evaluation.h"
+#include "host_sim/sensors/installed_testbeds.h"
 #include "host_sim/truth/earth/earth_orientation.h"
 #include "host_sim/twins/packet_source.h"
 #include "host_sim/twins/tile_source.h"

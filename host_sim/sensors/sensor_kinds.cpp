@@ -4,12 +4,12 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "hil_drivers/grand/pps/edge_clock.h"
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/mission/telecommands.h"
 #include "host_sim/sensors/camera/camera_kind.h"
 #include "host_sim/sensors/gnss/gnss_kind.h"
 #include "host_sim/sensors/ideal_navigation/ideal_navigation_kind.h"
+#include "host_sim/sensors/installed_testbeds.h"
 #include "host_sim/sensors/navigation_telecommands.h"
 #include "host_sim/sensors/range_finder/range_finder_kind.h"
 
@@ -37,7 +37,9 @@ mission::Installation installation() {
   installation.kinds.assign(std::begin(kSensorKinds), std::end(kSensorKinds));
   const auto testbeds = testbeds::testbed_kinds();
   installation.testbeds.assign(testbeds.begin(), testbeds.end());
-  installation.clocks = {&engine::kMonotonicClock, &grand::kPpsClock};
+  installation.clocks = {&engine::kMonotonicClock};
+  const auto clocks = testbeds::testbed_clocks();
+  installation.clocks.insert(installation.clocks.end(), clocks.begin(), clocks.end());
   return installation;
 }
 

@@ -55,7 +55,7 @@ void write_shard(const std::filesystem::path& file, std::uint64_t seed, std::int
   append_integer(kNumbers, 4, header);
   append_integer(seed, 8, header);
   append_integer(static_cast<std::uint64_t>(first), 8, header);
-  report::PartialFile out(file);
+  files::PartialFile out(file);
   out.append(header);
   out.append(crops);
   out.finish();

@@ -143,7 +143,7 @@ int plan_command(const Options& options) {
     std::fflush(stdout);
     json["faces"].push_back(json_of(plan));
   }
-  if (!options.json.empty()) report::replace_text_file(options.json, json.dump(2) + "\n");
+  if (!options.json.empty()) files::replace_text_file(options.json, json.dump(2) + "\n");
   return app::kDone;
 }
 

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
+#include "hil_drivers/testbeds.h"
 #include "hil_drivers/tron/laboratory_calibration/calibrate_command.h"
 #include "hil_drivers/tron/plan/plan_command.h"
 #include "host_sim/app/exit_codes.h"
@@ -30,6 +31,7 @@ int complain(const char* what, int exit_code) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  vbar::testbeds::install(vbar::testbeds::drivers());
   CLI::App program{"Planning and calibration of a robotic testbed (TRON)", "vbar tron"};
   program.require_subcommand(1);
   int exit_code = vbar::app::kDone;

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "hil_drivers/testbeds.h"
+#include "host_sim/sensors/installed_testbeds.h"
 
 namespace vbar::sensors {
 

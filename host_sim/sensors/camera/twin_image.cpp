@@ -9,11 +9,11 @@
 #include <fmt/format.h>
 
 #include "fsw/math/math.h"
-#include "hil_drivers/testbeds.h"
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/report/colour_picture.h"
 #include "host_sim/sensors/camera/known_camera.h"
 #include "host_sim/sensors/camera/make_camera.h"
+#include "host_sim/sensors/installed_testbeds.h"
 #include "host_sim/twins/camera/exposure_of_truth.h"
 
 namespace vbar::sensors {

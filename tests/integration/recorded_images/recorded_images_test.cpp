@@ -13,8 +13,8 @@
 #include <unistd.h>
 
 #include "host_sim/app/assemble.h"
-#include "host_sim/app/commands.h"
 #include "host_sim/app/connect_flight_computer.h"
+#include "host_sim/app/flown_mission.h"
 #include "host_sim/app/packet_keepers.h"
 #include "host_sim/mission/extends.h"
 #include "host_sim/mission/names.h"
@@ -94,10 +94,10 @@ Flown fly(const fs::path& out, const Overrides& overrides) {
   record.summary.mission = mission.name;
   record.summary.seed = mission.seed;
   report::RunFolder folder(out, record.summary, report::RunFolder::Existing::kRefuse, record.extensions);
-  report::replace_text_file(out / kMissionCopy, mission::whole_mission_text(mission.file));
+  files::replace_text_file(out / kMissionCopy, mission::whole_mission_text(mission.file));
   std::string lines;
   for (const std::string& one : overrides) lines += one + "\n";
-  report::replace_text_file(out / kOverridesCopy, lines);
+  files::replace_text_file(out / kOverridesCopy, lines);
 
   const auto computer = connect(mission);
   engine::SteadyWallClock wall;
@@ -146,7 +146,7 @@ class RecordedImages : public testing::Test {
   Flown fly_into(const std::string& name, Overrides overrides) {
     overrides.insert(overrides.end(), kShort.begin(), kShort.end());
     Flown flown = fly(folder_ / name, overrides);
-    report::replace_text_file(report::summary_file(folder_ / name), report::summary_json(flown.summary, {}));
+    files::replace_text_file(report::summary_file(folder_ / name), report::summary_json(flown.summary, {}));
     return flown;
   }
   [[nodiscard]] Said replay(const std::string& name, const Overrides& overrides = {}) const {

@@ -78,8 +78,8 @@ TEST_F(RunFolderTest, NothingIsWrittenThroughALink) {
   leave_a_run();
   const fs::path victim = scratch_ / "victim";
   write(victim, "content");
-  for (const std::string& name : {std::string("run.lock"), neighbour_of("summary.json").string(),
-                                  PartialFile::part_of("truth.csv").string(), std::string("truth.csv")}) {
+  for (const std::string& name : {std::string("run.lock"), files::neighbour_of("summary.json").string(),
+                                  files::PartialFile::part_of("truth.csv").string(), std::string("truth.csv")}) {
     fs::remove(run() / name);
     fs::create_symlink("../victim", run() / name);
   }
@@ -91,11 +91,11 @@ TEST_F(RunFolderTest, NothingIsWrittenThroughALink) {
 TEST_F(RunFolderTest, ASummaryIsWholeAtAnyTime) {
   RunFolder folder(run(), synthetic_run().summary);
   EXPECT_TRUE(is_summary(run() / "summary.json"));
-  EXPECT_GE(fs::file_size(neighbour_of(run() / "summary.json")), 2 * fs::file_size(run() / "summary.json"))
+  EXPECT_GE(fs::file_size(files::neighbour_of(run() / "summary.json")), 2 * fs::file_size(run() / "summary.json"))
       << "room for the last one";
   folder.give_up(synthetic_run().summary, "no space");
   EXPECT_EQ(read_summary(run() / "summary.json").incomplete_reason, "no space");
-  EXPECT_FALSE(fs::exists(neighbour_of(run() / "summary.json")));
+  EXPECT_FALSE(fs::exists(files::neighbour_of(run() / "summary.json")));
 }
 
 TEST_F(RunFolderTest, StandsWhereMissionAndSeedSay) {
@@ -246,11 +246,11 @@ TEST_F(RunFolderTest, ImageOfATestbedHasThePicturesOfTheTwinBesideIt) {
 // Folders of earlier versions have neither column nor pictures.
 TEST_F(RunFolderTest, GalleryWithoutTheColumnOfDifferencesIsRead) {
   leave_a_run();
-  const std::string text = read_text_file(run() / "gallery.csv");
+  const std::string text = files::read_text_file(run() / "gallery.csv");
   std::string older;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) older += line.substr(0, line.rfind(',')) + "\n";
-  replace_text_file(run() / "gallery.csv", older);
+  files::replace_text_file(run() / "gallery.csv", older);
   EXPECT_EQ(read_run(run(), sensors::extensions()).gallery.size(), synthetic_run().gallery.size());
 }
 

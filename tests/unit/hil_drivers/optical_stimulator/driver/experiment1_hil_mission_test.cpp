@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "hil_drivers/optical_stimulator/settings.h"
-#include "hil_drivers/testbeds.h"
 #include "host_sim/sensors/camera/camera_kind.h"
+#include "host_sim/sensors/installed_testbeds.h"
 #include "host_sim/sensors/sensor_kinds.h"
 #include "tests/support/paths.h"
 #include "tests/unit/host_sim/mission/mission_text.h"

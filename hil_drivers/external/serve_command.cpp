@@ -1,5 +1,4 @@
-// vbar serve: a digital sensor of a mission, or its truth, at the other end of an exchange with a run
-// (hil_drivers/external).
+#include "hil_drivers/external/serve_command.h"
 
 #include <algorithm>
 #include <memory>
@@ -10,8 +9,6 @@
 #include "hil_drivers/external/batch_server.h"
 #include "hil_drivers/external/served_source.h"
 #include "hil_drivers/external/served_truth.h"
-#include "host_sim/app/build_info.h"
-#include "host_sim/app/commands.h"
 #include "host_sim/app/connect_flight_computer.h"
 #include "host_sim/app/exit_codes.h"
 #include "host_sim/app/flown_truth.h"
@@ -21,14 +18,14 @@
 #include "host_sim/sensors/sensor_kinds.h"
 #include "pil_bridge/stream_transport.h"
 
-namespace vbar::app {
+namespace vbar::external {
 namespace {
 
 /// A run that is stopped in a debugger is waited for; one that is gone closes the line.
 constexpr std::chrono::hours kPatience{24};
 
-std::unique_ptr<twins::PacketSource> make_source(const mission::Mission& mission, const external::Opening& opening) {
-  auto made = sensors::make_sources(mission, flying_spacecraft(mission), mission::data_directory(), nullptr);
+std::unique_ptr<twins::PacketSource> make_source(const mission::Mission& mission, const Opening& opening) {
+  auto made = sensors::make_sources(mission, app::flying_spacecraft(mission), mission::data_directory(), nullptr);
   const auto found = std::ranges::find(made.sources, opening.name, &twins::NamedSource::name);
   if (found == made.sources.end())
     throw std::runtime_error(fmt::format("the mission has no source \"{}\"", opening.name));
@@ -40,40 +37,40 @@ class Served {
  public:
   explicit Served(const mission::Mission& mission)
       : mission_(mission),
-        numbers_(external::numbers_of(mission)),
-        source_([&mission](const external::Opening& opening) { return make_source(mission, opening); }) {}
+        numbers_(numbers_of(mission)),
+        source_([&mission](const Opening& opening) { return make_source(mission, opening); }) {}
 
   std::vector<twins::Packet> answer(std::span<const twins::Packet> packets) {
-    const external::Batch batch = external::batch_of(packets, numbers_);
-    if (!truth_ && batch.opening && batch.opening->name == external::kTruth) truth_.emplace(make_truth(), numbers_);
+    const Batch batch = batch_of(packets, numbers_);
+    if (!truth_ && batch.opening && batch.opening->name == kTruth) truth_.emplace(make_truth(), numbers_);
     return truth_ ? truth_->answer(batch) : source_.answer(batch);
   }
 
  private:
-  [[nodiscard]] external::ServedTruth::Make make_truth() const {
+  [[nodiscard]] ServedTruth::Make make_truth() const {
     return [&mission = mission_] {
-      return std::make_unique<FlownTruth>(mission, flying_spacecraft(mission), mission::data_directory());
+      return std::make_unique<app::FlownTruth>(mission, app::flying_spacecraft(mission), mission::data_directory());
     };
   }
 
   const mission::Mission& mission_;
-  external::SpacecraftNumbers numbers_;
-  external::ServedSource source_;
-  std::optional<external::ServedTruth> truth_;
+  SpacecraftNumbers numbers_;
+  ServedSource source_;
+  std::optional<ServedTruth> truth_;
 };
 
 }  // namespace
 
-int serve_command(const ServeOptions& options) {
+int serve_command(const ServeOptions& options, const std::string& version) {
   const mission::Mission mission =
       sensors::load_mission(mission::find_mission(options.mission, sensors::installation()), options.overrides);
   Served served(mission);
   pil::StreamTransport line(
       io::adopt_socket(io::FileDescriptor(options.stream), fmt::format("descriptor {}", options.stream)));
-  external::BatchServer server(line, fmt::format("vbar {}, {}", build_version(), mission.name),
-                               [&](std::span<const twins::Packet> batch) { return served.answer(batch); });
+  BatchServer server(line, fmt::format("vbar {}, {}", version, mission.name),
+                     [&](std::span<const twins::Packet> batch) { return served.answer(batch); });
   server.run(kPatience);
-  return kDone;
+  return app::kDone;
 }
 
-}  // namespace vbar::app
+}  // namespace vbar::external
