@@ -6,12 +6,11 @@
 #include <fmt/format.h>
 
 #include "host_sim/sensors/installed_testbeds.h"
-#include "host_sim/sensors/sensor_kinds.h"
 
 namespace vbar::sensors {
 
-std::unique_ptr<twins::PacketSource> packets_of_testbed(const mission::Sensor& sensor, const MakeContext& context,
-                                                        const mission::Spacecraft& carrier,
+std::unique_ptr<twins::PacketSource> packets_of_testbed(const mission::Sensor& sensor, const SensorKind& kind,
+                                                        const MakeContext& context, const mission::Spacecraft& carrier,
                                                         std::vector<fsw::packets::Apid> allowed, std::uint8_t unit,
                                                         PacketLimits limits) {
   const testbeds::TestbedKind* const testbed = testbeds::find_testbed(sensor.settings->source);
@@ -24,16 +23,17 @@ std::unique_ptr<twins::PacketSource> packets_of_testbed(const mission::Sensor& s
                             .allowed = std::move(allowed),
                             .spacecraft = context.servicer.number,
                             .unit = unit,
-                            .truth_is_compared = kind_of(sensor).compares_measurements,
+                            .truth_is_compared = kind.compares_measurements,
                             .packets_max = limits.packets_max,
                             .fault_of_value = std::move(limits.fault_of_value)});
 }
 
-std::unique_ptr<twins::PacketSource> only_packets_of_testbed(const mission::Sensor& sensor, const MakeContext& context,
-                                                             fsw::packets::Apid allowed, FaultOfValue fault_of_value) {
+std::unique_ptr<twins::PacketSource> only_packets_of_testbed(const mission::Sensor& sensor, const SensorKind& kind,
+                                                             const MakeContext& context, fsw::packets::Apid allowed,
+                                                             FaultOfValue fault_of_value) {
   constexpr std::size_t kPacketsMax = 64;  // one is nominal
-  auto packets = packets_of_testbed(sensor, context, context.servicer, {allowed}, unit_of(sensor, context.servicer),
-                                    {kPacketsMax, std::move(fault_of_value)});
+  auto packets = packets_of_testbed(sensor, kind, context, context.servicer, {allowed},
+                                    unit_of(sensor, context.servicer), {kPacketsMax, std::move(fault_of_value)});
   if (!packets && testbeds::find_testbed(sensor.settings->source) != nullptr)
     throw std::runtime_error(
         fmt::format("testbed \"{}\" has no sensor of kind {}", sensor.settings->source, sensor.kind));

@@ -1,4 +1,5 @@
 #pragma once
+// Packets of a sensor that a testbed provides whole.
 
 #include <cstddef>
 #include <functional>
@@ -21,9 +22,10 @@ struct PacketLimits {
 };
 
 /// The source of a sensor's packets about `carrier`, if a testbed provides whole packets: a sensor in another process.
-/// Null for any other source. Throws std::runtime_error
-/// if the testbed cannot, and without a run.
+/// Null for any other source.
+/// `kind`: that of the sensor. Throws std::runtime_error if the testbed cannot, and without a run.
 [[nodiscard]] std::unique_ptr<twins::PacketSource> packets_of_testbed(const mission::Sensor& sensor,
+                                                                      const SensorKind& kind,
                                                                       const MakeContext& context,
                                                                       const mission::Spacecraft& carrier,
                                                                       std::vector<fsw::packets::Apid> allowed,
@@ -31,6 +33,7 @@ struct PacketLimits {
 
 /// The same for a kind of sensor that no testbed provides otherwise: throws std::runtime_error for such a source.
 [[nodiscard]] std::unique_ptr<twins::PacketSource> only_packets_of_testbed(const mission::Sensor& sensor,
+                                                                           const SensorKind& kind,
                                                                            const MakeContext& context,
                                                                            fsw::packets::Apid allowed,
                                                                            FaultOfValue fault_of_value = {});

@@ -134,7 +134,7 @@ void add_sources(const Sensor& sensor, const MakeContext& context, std::vector<t
     sources.push_back({name, camera.source, std::make_unique<twins::RecordedLog>(camera.log, selection, make_tiles)});
     return;
   }
-  if (auto packets = packets_of_testbed(sensor, context, context.servicer, {fsw::packets::Apid::kImageTile},
+  if (auto packets = packets_of_testbed(sensor, kCamera, context, context.servicer, {fsw::packets::Apid::kImageTile},
                                         camera_unit(sensor, context.servicer))) {
     sources.push_back({name, camera.source, std::move(packets)});
     return;

@@ -120,7 +120,7 @@ void add_sources(const Sensor& sensor, const MakeContext& context, std::vector<t
   }
   const std::string& source = sensor.settings->source;
   const auto add = [&](const Spacecraft& carrier) {
-    auto packets = packets_of_testbed(sensor, context, carrier, messages_of(carrier, context.servicer), 0);
+    auto packets = packets_of_testbed(sensor, kGnss, context, carrier, messages_of(carrier, context.servicer), 0);
     if (!packets) packets = make_receiver(context, source, carrier);
     sources.push_back({source_name(carrier, sensor), source, std::move(packets)});
   };

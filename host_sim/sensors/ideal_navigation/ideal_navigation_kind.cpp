@@ -40,7 +40,7 @@ void add_sources(const mission::Sensor& sensor, const MakeContext& context, std:
     sources.push_back({name, own.source, std::make_unique<twins::RecordedLog>(own.log, selection)});
     return;
   }
-  if (auto packets = only_packets_of_testbed(sensor, context, fsw::packets::Apid::kIdealNavigation)) {
+  if (auto packets = only_packets_of_testbed(sensor, kIdealNavigation, context, fsw::packets::Apid::kIdealNavigation)) {
     sources.push_back({name, own.source, std::move(packets)});
     return;
   }

@@ -81,7 +81,7 @@ void add_sources(const mission::Sensor& sensor, const MakeContext& context, std:
     sources.push_back({name, own.source, std::make_unique<twins::RecordedLog>(own.log, selection)});
     return;
   }
-  if (auto packets = only_packets_of_testbed(sensor, context, fsw::packets::Apid::kRangeMeasurement,
+  if (auto packets = only_packets_of_testbed(sensor, kRangeFinder, context, fsw::packets::Apid::kRangeMeasurement,
                                              [settings = own.range_finder](const fsw::packets::PacketView& packet) {
                                                return fault_of_range(packet, settings);
                                              })) {

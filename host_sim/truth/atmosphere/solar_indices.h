@@ -3,9 +3,10 @@
 
 #include <array>
 
-#include "host_sim/truth/forces/force_model.h"
-
 namespace vbar::truth {
+
+/// Which Ap the atmosphere is given: the day's mean, or the last 57 hours in steps of three.
+enum class GeomagneticIndex { kDaily, kThreeHourly };
 
 struct SolarIndices {
   double f107 = 0.0;          ///< 10.7 cm flux of the day before, observed, 1e-22 W/m^2/Hz

@@ -9,7 +9,6 @@
 
 #include "fsw/core/gps_time.h"
 #include "host_sim/truth/atmosphere/solar_indices.h"
-#include "host_sim/truth/forces/force_model.h"
 
 namespace vbar::truth {
 

@@ -1,10 +1,9 @@
 #pragma once
 // Which forces act on the spacecraft of a run, beside the Earth's gravity field: the switches of a mission file.
 
-namespace vbar::truth {
+#include "host_sim/truth/atmosphere/solar_indices.h"
 
-/// Which Ap the atmosphere is given: the day's mean, or the last 57 hours in steps of three.
-enum class GeomagneticIndex { kDaily, kThreeHourly };
+namespace vbar::truth {
 
 /// The Earth's shadow: none, a cylinder with a sharp edge, or penumbra and umbra of a Sun with a disk.
 enum class Shadow { kNone, kCylindrical, kConical };

@@ -1,7 +1,6 @@
 #include "host_sim/twins/camera/image_recipe.h"
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -56,10 +55,6 @@ ObjectInView object_of(const vbar_host::object_in_view& message) {
           vector_of(message.velocity_eci),
           quaternion_of(message.q_body_eci),
           message.sunlit};
-}
-
-bool fits_header(std::int16_t number) {
-  return number >= 0 && number <= std::numeric_limits<std::uint8_t>::max();
 }
 
 }  // namespace

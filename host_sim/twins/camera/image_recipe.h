@@ -2,6 +2,7 @@
 // An exposure as bytes, for a log: with the camera's settings and the seed it determines the image.
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -13,6 +14,11 @@ namespace vbar::twins::camera {
 /// Limits of an LCM message vbar_host.image_recipe.
 inline constexpr std::size_t kMaxObjectsInView = 8;
 inline constexpr std::size_t kMaxNameBytes = 63;
+
+/// Whether a number of a logged message fits its field in the header of a packet.
+constexpr bool fits_header(std::int16_t number) {
+  return number >= 0 && number <= std::numeric_limits<std::uint8_t>::max();
+}
 
 /// An exposure, and the headers of its packets.
 struct ImageRecipe {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -10,6 +9,7 @@
 #include <vbar_host/recorded_image.hpp>
 
 #include "fsw/packets/big_endian.h"
+#include "host_sim/twins/camera/image_recipe.h"
 
 namespace vbar::twins::camera {
 namespace {
@@ -21,10 +21,6 @@ constexpr std::size_t kDataAt = kSizeAt + 4;
 
 std::size_t pixels_in(const Region& region) {
   return static_cast<std::size_t>(region.width) * static_cast<std::size_t>(region.height);
-}
-
-bool fits_header(std::int16_t number) {
-  return number >= 0 && number <= std::numeric_limits<std::uint8_t>::max();
 }
 
 /// JPEG-LS of samples of one type.

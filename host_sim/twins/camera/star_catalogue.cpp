@@ -20,9 +20,6 @@ namespace {
 
 using fsw::Vector3;
 
-constexpr double kDegree = M_PI / 180.0;
-constexpr double kMilliarcsecond = kDegree / 3.6e6;
-
 /// The rows of a file, and refusals that name them.
 class Rows {
  public:
@@ -137,15 +134,16 @@ std::array<std::string_view, kFields> fields_of(const Rows& rows) {
 }
 
 void move_to_j2000(CatalogueStar& star) {
-  const double ra = star.ra_deg * kDegree, dec = star.dec_deg * kDegree;
+  const double ra = star.ra_deg * kRadPerDegree, dec = star.dec_deg * kRadPerDegree;
   const Vector3 east(-std::sin(ra), std::cos(ra), 0.0);
   const Vector3 north(-std::sin(dec) * std::cos(ra), -std::sin(dec) * std::sin(ra), std::cos(dec));
   const Vector3 place(std::cos(dec) * std::cos(ra), std::cos(dec) * std::sin(ra), std::sin(dec));
-  const Vector3 moved = place + kYearsToJ2000 * kMilliarcsecond * (star.pm_ra_mas * east + star.pm_dec_mas * north);
-  const double ra_now = std::atan2(moved.y(), moved.x()) / kDegree;
+  const Vector3 moved =
+      place + kYearsToJ2000 * kRadPerMilliarcsecond * (star.pm_ra_mas * east + star.pm_dec_mas * north);
+  const double ra_now = std::atan2(moved.y(), moved.x()) / kRadPerDegree;
   star.ra_deg = ra_now < 0.0 ? ra_now + 360.0 : ra_now;
   if (star.ra_deg >= 360.0) star.ra_deg = 0.0;  // of a place just west of the equinox
-  star.dec_deg = std::atan2(moved.z(), std::hypot(moved.x(), moved.y())) / kDegree;
+  star.dec_deg = std::atan2(moved.z(), std::hypot(moved.x(), moved.y())) / kRadPerDegree;
 }
 
 /// Nothing for an entry without place or magnitude.

@@ -1,10 +1,14 @@
 #pragma once
 // Files of stars: the project's own table (data/stars), and the main catalogue of Hipparcos as published.
 
+#include <cmath>
 #include <filesystem>
 #include <vector>
 
 namespace vbar::twins::camera {
+
+inline constexpr double kRadPerDegree = M_PI / 180.0;
+inline constexpr double kRadPerMilliarcsecond = kRadPerDegree / 3.6e6;
 
 struct CatalogueStar {
   int hip = 0;              ///< 0: not in the Hipparcos catalogue

@@ -14,17 +14,14 @@ namespace {
 
 using fsw::Vector3;
 
-constexpr double kDegree = M_PI / 180.0;
-constexpr double kMilliarcsecond = kDegree / 3.6e6;
-
 SkyStar sky_star_of(const CatalogueStar& entry, double zero_magnitude_photons) {
-  const double ra = entry.ra_deg * kDegree, dec = entry.dec_deg * kDegree;
+  const double ra = entry.ra_deg * kRadPerDegree, dec = entry.dec_deg * kRadPerDegree;
   SkyStar star;
   star.hip = entry.hip;
   star.direction_j2000 = Vector3(std::cos(dec) * std::cos(ra), std::cos(dec) * std::sin(ra), std::sin(dec));
   const Vector3 east(-std::sin(ra), std::cos(ra), 0.0);
   const Vector3 north = star.direction_j2000.cross(east);
-  star.motion_per_year = kMilliarcsecond * (entry.pm_ra_mas * east + entry.pm_dec_mas * north);
+  star.motion_per_year = kRadPerMilliarcsecond * (entry.pm_ra_mas * east + entry.pm_dec_mas * north);
   star.v = entry.v;
   star.b_v = entry.b_v;
   star.photons_per_m2_s = star_photons(zero_magnitude_photons, star.v, star.b_v);

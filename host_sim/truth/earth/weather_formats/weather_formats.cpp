@@ -14,8 +14,8 @@ namespace {
 
 using Day = SpaceWeather::Day;
 
-// ap on its scale, and the fluxes of a Sun without spots (65) up to the largest flare.
-constexpr double kLargestAp = 400.0, kLowestFlux = 50.0, kLargestFlux = 1000.0;
+// Below the flux of a Sun without spots (65).
+constexpr double kLowestFlux = 50.0;
 
 double checked(const files::TextLines& lines, double value, double low, double high, std::string_view what) {
   if (!(value >= low && value <= high))

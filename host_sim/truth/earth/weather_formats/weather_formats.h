@@ -15,6 +15,10 @@ namespace vbar::truth {
 
 using WeatherDays = std::vector<SpaceWeather::Day>;
 
+// Largest ap of its scale, and the flux of the largest flare.
+inline constexpr double kLargestAp = 400.0;
+inline constexpr double kLargestFlux = 1000.0;
+
 struct WeatherFormat {
   std::string_view name;
   bool (*recognises)(std::string_view text);

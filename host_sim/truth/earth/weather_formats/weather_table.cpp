@@ -11,9 +11,6 @@ constexpr std::size_t kColumnCount = 12;
 constexpr std::string_view kColumns =
     "mjd_utc,ap1,ap2,ap3,ap4,ap5,ap6,ap7,ap8,ap_daily,f107_observed,f107_observed_81d";
 
-// ap on its scale, and a flux that a quiet Sun or a flare can have.
-constexpr double kLargestAp = 400.0;
-constexpr double kLargestFlux = 1000.0;
 constexpr std::string_view kAccepted = "ap of 0 to 400 and fluxes above 0 and up to 1000";
 
 using Row = std::array<double, kColumnCount>;
