@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "hil_drivers/tron/bench_file/bench_file.h"
-#include "hil_drivers/tron/hardware/robot_pair.h"
+#include "hil_drivers/tron/kinematics/posture.h"
 #include "hil_drivers/tron/placement/scene.h"
 
 namespace vbar::tron {

@@ -16,18 +16,6 @@
 
 namespace vbar::tron {
 
-/// A motion of both arms and the carriage, given for every robot cycle.
-struct Motion {
-  int cycles = 0;                               ///< of which the last is at rest
-  std::function<Posture(int cycle)> at;         ///< from 1
-  std::function<Motion(int cycle)> stop_after;  ///< slows down along the same path, after that cycle
-};
-
-enum class MotionEnd {
-  kArrived,
-  kInterrupted,  ///< both arms are at rest, or stopped by their controllers: recover()
-};
-
 struct RobotPairSettings {
   rsi::ClientSettings camera_rsi, target_rsi;
   eki::ClientSettings camera_eki, target_eki;  ///< host and port may be set later, before open()

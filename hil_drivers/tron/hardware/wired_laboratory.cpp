@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "hil_drivers/gige/camera/camera.h"
+#include "hil_drivers/tron/hardware/robot_pair.h"
 #include "hil_drivers/tron/robot/robot_files.h"
 #include "hil_drivers/tron/sacn/sender.h"
 #include "hil_drivers/tron/vicon/receiver.h"
