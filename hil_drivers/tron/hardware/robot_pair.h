@@ -22,7 +22,7 @@ struct RobotPairSettings {
   double track_home_m = 0.0;
   bool is_virtual = true;                           ///< the clock of the bench
   std::chrono::milliseconds start_patience{5000};   ///< wall clock, for the first state after RSI was started
-  std::chrono::milliseconds silence_patience{500};  ///< of a robot in a cycle; with the virtual clock 20 times as much
+  std::chrono::milliseconds silence_patience{500};  ///< silence in a cycle; virtual clock: 20 times as much
   double settle_limit_s = 5.0;                      ///< bench time
   double operator_timeout_s = 600.0;                ///< bench time
   /// Called after each cycle with their number, also by the thread that holds the arms.

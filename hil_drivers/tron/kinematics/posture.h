@@ -21,7 +21,7 @@ struct Posture {
 
 /// A motion of both arms and the carriage, given for every robot cycle.
 struct Motion {
-  int cycles = 0;                               ///< of which the last is at rest
+  int cycles = 0;                               ///< number of cycles; the last is at rest
   std::function<Posture(int cycle)> at;         ///< from 1
   std::function<Motion(int cycle)> stop_after;  ///< slows down along the same path, after that cycle
 };
