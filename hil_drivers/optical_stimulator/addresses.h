@@ -7,7 +7,7 @@
 namespace vbar::optical_stimulator {
 
 struct BenchAddresses {
-  std::string display;  ///< of its X server
+  std::string display;  ///< name of its X server
   std::string camera;   ///< IP address
   std::string rails;    ///< a tty
 };

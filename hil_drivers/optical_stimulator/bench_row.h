@@ -10,18 +10,18 @@
 namespace vbar::optical_stimulator {
 
 struct BenchRow {
-  double time_s = 0.0;     ///< of the middle of the exposure, since the mission's epoch
+  double time_s = 0.0;     ///< middle of the exposure, since the mission's epoch
   std::int64_t image = 0;  ///< number of the exposure
-  std::int64_t frame = 0;  ///< of the picture, in the frame strip
+  std::int64_t frame = 0;  ///< number of the picture in the frame strip
   std::int64_t tries = 1;  ///< images taken for it
-  std::int64_t stale = 0;  ///< of these, those that showed another picture
+  std::int64_t stale = 0;  ///< tries that showed another picture
   std::int64_t packets_resent = 0, reconnects = 0;
   // Wall clock.
   double render_s = 0.0;          ///< scene to expected electrons to counts
   double show_s = 0.0;            ///< until the picture is on the screen, and its settling
   double receive_s = 0.0;         ///< from the trigger until the image is whole: exposure, readout, transfer
   double strip_brightness = 0.0;  ///< relative to the calibration
-  std::optional<double> rail_lens_mm, rail_display_mm;  ///< of an image after which the rails were asked
+  std::optional<double> rail_lens_mm, rail_display_mm;  ///< set for an image after which the rails were asked
   std::int64_t points = 0;                              ///< drawn with matched counts
   double wanted_electrons = 0.0, clipped_electrons = 0.0;
 };

@@ -25,7 +25,7 @@ constexpr const char* kName = "optical_stimulator";
 /// The waits of an image, in the order in which they follow each other.
 struct Wait {
   const char* name;
-  const char* figure;  // of the summary
+  const char* figure;  // key of the summary
   double BenchRow::*value_s;
 };
 constexpr std::array<Wait, 3> kWaits{{{"render", "render", &BenchRow::render_s},

@@ -23,7 +23,7 @@ struct RunFigures {
   const BenchCalibration* calibration = nullptr;
   std::optional<SelfCheckFigures> self_check;
   CameraIdentity devices;
-  std::vector<report::FileDigest> bench_files;  ///< of an emulated bench: its program and files
+  std::vector<report::FileDigest> bench_files;  ///< program and files of an emulator
   std::map<std::string, int> faults;            ///< likewise, that have taken effect
 };
 

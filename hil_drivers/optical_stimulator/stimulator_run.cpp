@@ -25,7 +25,7 @@ double seconds_since(Clock::time_point start) {
 /// A display of that rate shows whole frames: the light of an exposure that cuts one depends on when it begins.
 void check_exposure(double exposure_s, double rate_hz) {
   const double frames = exposure_s * rate_hz;
-  constexpr double kTolerance = 0.02;  // of a frame: 2 parts in 1000 of the light of 0.2 s at 60 Hz
+  constexpr double kTolerance = 0.02;  // share of a frame: 2 parts in 1000 of the light of 0.2 s at 60 Hz
   if (std::abs(frames - std::round(frames)) > kTolerance)
     throw std::runtime_error(fmt::format(
         "an exposure of {} s is {:.2f} frames of a display of {} Hz, not a whole number of them; any_exposure = true "

@@ -63,7 +63,7 @@ class StimulatorRun final : public testbeds::TestbedRun, public std::enable_shar
   std::optional<SelfCheckFigures> self_check_;
   report::RunRecord* record_ = nullptr;
 
-  mutable std::mutex mutex_;  // of the rows, which take() adds
+  mutable std::mutex mutex_;  // guards the rows, which take() adds
   std::vector<BenchRow> rows_;
 };
 

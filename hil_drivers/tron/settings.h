@@ -19,11 +19,11 @@ struct TronSettings : mission::TestbedSettings {
   // Addresses; empty: of an emulated bench as it says, otherwise as the bench file says.
   std::string camera_address, camera_robot_address, target_robot_address, lights_address;
   int trials = 400;             ///< placements tried for an image
-  int max_hidden = 3;           ///< of the keypoints and the centre, in an image that is taken
+  int max_hidden = 3;           ///< largest number of keypoints and centre hidden, in an image that is taken
   double settle_limit_s = 5.0;  ///< bench time for the arms to come to rest
-  double correct_above_mm = 0.5, correct_above_deg = 0.02;  ///< of a pose, which is then corrected once
-  double fail_above_mm = 5.0, fail_above_deg = 0.3;         ///< of a corrected pose
-  int retries = 3;                                          ///< of a trigger
+  double correct_above_mm = 0.5, correct_above_deg = 0.02;  ///< errors of a pose, which is then corrected once
+  double fail_above_mm = 5.0, fail_above_deg = 0.3;         ///< errors of a corrected pose
+  int retries = 3;                                          ///< tries of a trigger
   int packet_size = 8000;
   std::chrono::milliseconds timeout{3000};     ///< wall clock: of a device that does not answer
   std::chrono::seconds operator_timeout{600};  ///< bench time: of a stop that the operator has to clear

@@ -15,13 +15,13 @@ namespace vbar::tron {
 /// What is known at the end of a run, beside the rows.
 struct RunFigures {
   bool is_emulated = false;
-  std::string clock;                         ///< of the bench: "virtual", "real"
+  std::string clock;                         ///< clock of the testbed: "virtual", "real"
   std::string camera;                        ///< vendor, model, serial number
   std::vector<std::filesystem::path> files;  ///< bench file and calibration
-  /// Of the devices, by name: late answers, stops, restarts, frames lost, ...
+  /// Counters of the devices, by name: late answers, stops, restarts, frames lost, ...
   std::map<std::string, double> devices;
   std::map<std::string, double> calibration;    ///< its figures
-  std::vector<report::FileDigest> bench_files;  ///< of an emulated bench: its program and files
+  std::vector<report::FileDigest> bench_files;  ///< program and files of an emulator
   std::map<std::string, int> faults;            ///< likewise, that have taken effect
 };
 

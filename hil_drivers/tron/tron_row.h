@@ -10,7 +10,7 @@
 namespace vbar::tron {
 
 struct TronRow {
-  double time_s = 0.0;      ///< of the middle of the exposure, since the mission's epoch
+  double time_s = 0.0;      ///< middle of the exposure, since the mission's epoch
   std::int64_t image = 0;   ///< number of the exposure
   std::string failure;      ///< why it was not taken; empty: it was
   std::string pose_source;  ///< "fused", "arms"; empty: the target was not lit, and the arms did not move
@@ -20,7 +20,7 @@ struct TronRow {
   double bench_s = 0.0, move_s = 0.0;  ///< bench time: of the image, of its moves
   // Measured pose less the commanded one, laboratory lengths; of the first move, and after the correction.
   std::optional<double> first_error_mm, first_error_deg, pose_error_mm, pose_error_deg;
-  std::optional<double> disagreement;  ///< of arms and motion capture, chi-square of six degrees of freedom
+  std::optional<double> disagreement;  ///< chi-square between arms and motion capture, six degrees of freedom
   std::optional<double> lamp_azimuth_deg, sun_error_deg;
   double lamp_power = 0.0;
   std::optional<double> earth_light_misfit;  ///< rms over the normals, relative to the largest irradiance of the Earth

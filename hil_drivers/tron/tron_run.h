@@ -58,7 +58,7 @@ class TronRun final : public testbeds::TestbedRun, public std::enable_shared_fro
   std::optional<testbeds::CameraPlan> plan_;
   twins::camera::CameraSettings camera_;  ///< as calibrated
   double exposure_s_ = 0.0;               ///< in the laboratory
-  std::string clock_;                     ///< of the bench
+  std::string clock_;                     ///< clock of the testbed
 
   std::optional<bench_process::BenchProcess> process_;
   std::unique_ptr<WiredLaboratory> laboratory_;
@@ -70,7 +70,7 @@ class TronRun final : public testbeds::TestbedRun, public std::enable_shared_fro
   report::RunRecord* record_ = nullptr;
   std::filesystem::path folder_;
   std::filesystem::path truth_file_;  ///< that an emulated bench writes
-  mutable std::mutex mutex_;          // of the rows, which take() adds
+  mutable std::mutex mutex_;          // guards the rows, which take() adds
   std::vector<TronRow> rows_;
 };
 

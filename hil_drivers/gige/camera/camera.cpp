@@ -268,7 +268,7 @@ class Camera::Connection {
   }
   [[nodiscard]] std::size_t image_bytes() const { return wire::image_bytes(settings_.pixel_format, pixels()); }
 
-  /// Of one image over the wire, at least that of a link with 100 MB/s.
+  /// Returns the time of one image over the wire, at least that of a link with 100 MB/s.
   [[nodiscard]] double transfer_s() const {
     const auto data = static_cast<double>(static_cast<std::size_t>(settings_.packet_size) - wire::kPacketOverheadBytes);
     const auto bytes = static_cast<double>(image_bytes());
@@ -344,7 +344,7 @@ class Camera::Connection {
   double delay_ns_ = 0.0;
   std::size_t payload_ = 0;
   PixelPadding padding_;
-  std::uint64_t last_timestamp_ns_ = 0;  ///< of the last whole image
+  std::uint64_t last_timestamp_ns_ = 0;  ///< camera time of the last whole image
   bool is_started_ = false;
 };
 

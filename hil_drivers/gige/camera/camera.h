@@ -26,10 +26,10 @@ class CameraError : public std::runtime_error {
 struct Frame {
   int width = 0, height = 0;
   std::vector<std::uint16_t> dn;  ///< right-aligned, rows of width
-  int bits = 0;                   ///< of the converter
+  int bits = 0;                   ///< resolution of the converter
   std::int64_t packets_resent = 0;
   double receive_s = 0.0;          ///< wall clock, from the trigger
-  std::uint64_t timestamp_ns = 0;  ///< of the camera; 0: it states none
+  std::uint64_t timestamp_ns = 0;  ///< clock of the camera; 0: it states none
 };
 
 /// Why there is no image; to be tried again or not, as the caller decides.
@@ -51,7 +51,7 @@ class Camera {
  public:
   struct Settings {
     std::string address;                      ///< IPv4
-    std::string interface_address;            ///< of this computer; empty: the one that routes to `address`
+    std::string interface_address;            ///< interface of this computer; empty: the one that routes to `address`
     std::string model;                        ///< that the camera's has to contain; empty: any
     std::string serial;                       ///< empty: any
     int sensor_width = 0, sensor_height = 0;  ///< 0: any

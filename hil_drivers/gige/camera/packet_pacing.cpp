@@ -17,8 +17,9 @@ namespace {
 
 /// A receiver on a busy computer is not run for this long.
 constexpr double kReceiverPauseNs = 10e6;
-/// Of the buffer, while the receiver reads: the kernel gives back what was read only when it is a quarter of the buffer
-/// or the queue is empty (Linux, net/ipv4/udp.c, udp_rmem_release; measured: 0.75 of the packets at 416 KiB to 8 MiB).
+/// Share of the buffer that is usable while the receiver reads: the kernel gives back what was read only when it is a
+/// quarter of the buffer or the queue is empty (Linux, net/ipv4/udp.c, udp_rmem_release; measured: 0.75 of the packets
+/// at 416 KiB to 8 MiB).
 constexpr double kUsableShare = 0.75;
 constexpr std::size_t kSharedInfoBytes = 320, kDescriptorBytes = 256, kHeadroomBytes = 64;  // Linux, 64 bits
 

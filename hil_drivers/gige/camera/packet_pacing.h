@@ -15,7 +15,8 @@ struct SocketBuffer {
 /// std::system_error if there is no socket.
 [[nodiscard]] SocketBuffer granted_socket_buffer(std::size_t bytes);
 
-/// Of a packet in the buffer, as the kernel counts: data and headers in a power of two, and the descriptor.
+/// Returns the size of a packet in the buffer, as the kernel counts: data and headers in a power of two, and the
+/// descriptor.
 [[nodiscard]] std::size_t bytes_in_buffer(std::size_t packet_size);
 
 [[nodiscard]] std::size_t packets_of_image(std::size_t image_bytes, std::size_t packet_size);

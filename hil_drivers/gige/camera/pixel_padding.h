@@ -16,7 +16,7 @@ class PixelPadding {
   /// Takes the raw pixels of an image into account.
   void observe(std::span<const std::uint16_t> pixels);
 
-  /// Of the converter.
+  /// Returns the number of bits of the converter.
   [[nodiscard]] int bits() const;
   /// Right-aligned number = pixel >> shift().
   [[nodiscard]] int shift() const;

@@ -20,7 +20,7 @@ struct Request {
   twins::camera::Region region;
   double exposure_s = 0.0;
   double gain_db = 0.0;
-  double black_level_dn = 0.0;  ///< of the converter's numbers
+  double black_level_dn = 0.0;  ///< offset in numbers of the converter
   std::int64_t number = 0;      ///< exposures before this one
 };
 

@@ -27,7 +27,7 @@ asio::ip::address_v4 address_of(const std::string& text) {
   return address;
 }
 
-/// Of the documentation's network: an owner that no host is.
+/// Owner that no host is: an address of the network that is reserved for documentation.
 const udp::endpoint kOtherOwner(asio::ip::make_address_v4("192.0.2.1"), 1);
 
 }  // namespace

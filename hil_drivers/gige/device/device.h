@@ -24,8 +24,8 @@ class Device {
     std::uint16_t port = wire::kGvcpPort;  ///< clients accept no other; 0 for tests: any free one
     Description description;
     Pace pace = Pace::kFast;
-    double readout_s = 6.1e-3;  ///< of the whole sensor; of a region in proportion to its rows
-    std::uint64_t seed = 1;     ///< of the packet faults
+    double readout_s = 6.1e-3;  ///< whole sensor; a region takes the share of its rows
+    std::uint64_t seed = 1;     ///< random stream of the packet faults
   };
 
   struct Statistics {

@@ -58,7 +58,7 @@ struct Feature {
   double min = 0.0, max = 0.0, increment = 1.0;
   std::string_view max_feature = "";  ///< has the limit in the place of `max`
   std::string_view unit = "";
-  std::vector<std::pair<std::string_view, std::uint32_t>> entries = {};  ///< of an enumeration
+  std::vector<std::pair<std::string_view, std::uint32_t>> entries = {};  ///< names and values of an enumeration
   bool locked_in_acquisition = false;
 
   [[nodiscard]] std::uint32_t address() const { return 0x10000U + 8U * static_cast<std::uint32_t>(id); }

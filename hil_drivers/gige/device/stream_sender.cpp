@@ -15,8 +15,9 @@ using Clock = std::chrono::steady_clock;
 
 /// Requests that wait; more are a host that asks faster than packets leave.
 constexpr std::size_t kMaxResends = 256;
-/// Of packets that a late timer owes, sent at once. A camera does not burst; on a busy computer the timer is late by
-/// milliseconds, and what it owes has to stay well below what the buffer of the receiver holds.
+/// Largest delay of packets that a late timer makes up for at once. A camera does not burst; on a busy computer the
+/// timer is late by milliseconds, and the packets pending since then have to stay well below what the buffer of the
+/// receiver holds.
 constexpr std::chrono::microseconds kMaxDebt(3000);
 /// Packets between two looks at the commands of the host.
 constexpr int kPacketsAtATime = 64;

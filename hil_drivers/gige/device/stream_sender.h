@@ -65,7 +65,7 @@ class StreamSender {
     std::uint16_t number = 0;
     wire::Leader leader;
     wire::Bytes payload;
-    std::size_t data_bytes = 0;  ///< of a packet
+    std::size_t data_bytes = 0;  ///< payload of a packet
     [[nodiscard]] std::uint32_t data_packets() const {
       return static_cast<std::uint32_t>((payload.size() + data_bytes - 1) / data_bytes);
     }

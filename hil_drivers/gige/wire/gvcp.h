@@ -32,7 +32,7 @@ enum class Command : std::uint16_t {
 
 enum class Status : std::uint16_t {
   kSuccess = 0x0000,
-  kPacketResend = 0x0100,  ///< of a stream packet: it is sent again
+  kPacketResend = 0x0100,  ///< a stream packet is sent again
   kNotImplemented = 0x8001,
   kInvalidParameter = 0x8002,
   kInvalidAddress = 0x8003,

@@ -26,7 +26,7 @@ struct DisplaySettings {
   double response_ms = 1.0;  ///< time constant of a pixel; pace "real"
 };
 
-/// Of the camera in front of the bench, against its file.
+/// Differences between the camera in front of the display and its file.
 struct CameraErrors {
   std::string file = "optical_stimulator";
   double gain_factor = 1.03;
@@ -45,7 +45,7 @@ struct RailSettings {
   double microstep_um = 0.047625;
   double backlash_um = 3.0;
   double repeatability_um = 0.5;  ///< one sigma of a place that is approached
-  double travel_mm = 101.6;       ///< of each axis
+  double travel_mm = 101.6;       ///< length of each axis
   double lens_zero_mm = 15.0;     ///< distance of the lenses with axis 1 at home
   double display_zero_mm = 20.0;  ///< display behind lens 2 with axis 2 at home
   double zero_error_mm = 0.1;     ///< one sigma of both, from the seed
@@ -64,7 +64,7 @@ struct DriftSettings {
 struct BenchSettings {
   std::uint64_t seed = 1;
   Pace pace = Pace::kFast;
-  bool noise = true;  ///< of the detector; false: expected electrons, rounded
+  bool noise = true;  ///< noise of the detector; false: expected electrons, rounded
   LensPair lenses;
   DisplayPose pose;
   OpticsErrors optics;

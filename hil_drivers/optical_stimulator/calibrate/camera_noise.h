@@ -24,7 +24,8 @@ struct MeanVariance {
 /// Width and height of the part of the detector whose noise is measured, about its middle.
 inline constexpr double kNoiseShare = 0.3;
 
-/// Of that part of the detector; pixels that differ by more than six standard deviations are left out.
+/// Returns mean and variance of that part of the detector; pixels that differ by more than six standard deviations are
+/// left out.
 [[nodiscard]] MeanVariance mean_variance(const FramePair& pair, int width, int height);
 
 /// The line variance = read variance + gain (mean - offset), by weighted least squares; `black` is the pair without

@@ -21,15 +21,15 @@ struct CameraPicture {
 
 struct DotWindow {
   double search_px = 8.0;     ///< the dot is the brightest 3 x 3 pixels within this distance of the expected place
-  double sigma_px = 1.6;      ///< of the Gaussian window of centroid and width
-  int half_width_px = 14;     ///< of the square whose sum is the dot's light; its border is the background
+  double sigma_px = 1.6;      ///< Gaussian window of centroid and width
+  int half_width_px = 14;     ///< square whose sum is the dot's light; its border is the background
   double peak_min_dn = 20.0;  ///< above the background
 };
 
 struct DotMeasurement {
   fsw::Vector2 centre_px;  ///< an integer is the centre of a pixel
   double light_dn = 0.0;   ///< sum over the square above the background
-  double sigma_px = 0.0;   ///< of the Gaussian whose windowed second moment this is, as sampled by the pixels
+  double sigma_px = 0.0;   ///< Gaussian with this windowed second moment, as sampled by the pixels
   double peak_dn = 0.0;    ///< highest pixel, background included
   double background_dn = 0.0;
 };

@@ -30,12 +30,12 @@ struct Residual {
 };
 [[nodiscard]] std::vector<Residual> residuals_of(const DisplayMap& map, const std::vector<Dot>& dots);
 
-/// Of all residuals, or of those in a region of the camera.
+/// Returns the figures of all residuals, or of those in a region of the camera.
 [[nodiscard]] ResidualFigures figures_of(const std::vector<Residual>& residuals);
 [[nodiscard]] std::vector<Residual> in_region(const std::vector<Residual>& residuals,
                                               const twins::camera::Region& region);
 
-/// Of the whole detector and of the region, with the field and without; the goals of goals.h.
+/// Returns the figures of the whole detector and of the region, with the field and without; the goals of goals.h.
 [[nodiscard]] HeldOutResiduals held_out_residuals(const DisplayMapParameters& map, const std::vector<Dot>& dots,
                                                   const twins::camera::Region& region);
 

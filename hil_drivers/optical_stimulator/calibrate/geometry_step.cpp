@@ -18,8 +18,8 @@ namespace {
 using fsw::Vector2;
 
 constexpr double kDotSigma_px = 0.7;       // display pixels
-constexpr double kRenderedSigma_px = 0.5;  // of a star in a rendered picture
-constexpr double kEdge_px = 8.0;           // of the display, free of dots
+constexpr double kRenderedSigma_px = 0.5;  // width of a star in a rendered picture
+constexpr double kEdge_px = 8.0;           // border of the display, free of dots
 
 struct MeasuredDots {
   std::vector<Dot> dots;

@@ -13,7 +13,7 @@ namespace vbar::optical_stimulator::calibrate {
 struct Dot {
   fsw::Vector2 display_px;        ///< centre of its light on the display
   fsw::Vector2 camera_px;         ///< measured
-  fsw::Vector3 direction_camera;  ///< of camera_px by the camera's own model, unit
+  fsw::Vector3 direction_camera;  ///< direction of camera_px by the camera's own model, unit
 };
 
 struct LensFit {

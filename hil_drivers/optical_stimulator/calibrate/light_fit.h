@@ -13,7 +13,7 @@ struct SquareLight {
   int place = 0;  ///< squares of one place have the same pixels
   double count = 0.0;
   double electrons_per_s = 0.0;
-  double sigma = 0.0;  ///< of it
+  double sigma = 0.0;  ///< standard deviation of the value
 };
 
 struct ResponseFit {
@@ -35,7 +35,7 @@ struct PlaceLight {
 
 struct UniformityFit {
   UniformityGrid grid;
-  double mean_electrons_per_s = 0.0;  ///< of a full pixel where the grid is 1
+  double mean_electrons_per_s = 0.0;  ///< mean of the full pixels, where the grid is 1
 };
 
 /// A polynomial of degree `degree` in both axes through the places: pixels differ at random, the field is smooth.

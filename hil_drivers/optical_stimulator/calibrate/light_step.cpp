@@ -138,7 +138,7 @@ void measure_uniformity(Session& session) {
 void estimate_black_pixel(Session& session) {
   const Figure& background = session.result.camera.background_electrons_per_s;
   const double pixels = session.settings.camera.focal_length_px() / session.map().focal_length_px();
-  const double area = pixels * pixels;  // of a display pixel, in camera pixels
+  const double area = pixels * pixels;  // size of a display pixel, in camera pixels
   session.result.light.black_pixel_electrons_per_s = {
       area * (background.value - session.settings.camera.detector.dark_electrons_per_s), area * background.sigma};
 }

@@ -7,7 +7,7 @@ namespace vbar::optical_stimulator::calibrate {
 
 struct ProcedureResult {
   BenchCalibration calibration;
-  std::vector<Residual> residuals;  ///< of the dots held out, for the heat map
+  std::vector<Residual> residuals;  ///< dots held out, for the heat map
 };
 
 /// Rails home; noise; focus; gain; counts to light; geometry; dots held out. Of the validity it fills what it measured:

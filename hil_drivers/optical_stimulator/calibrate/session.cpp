@@ -76,7 +76,7 @@ CameraPicture Session::well_exposed(double& exposure_s, int frames) {
     const double share = (nth_greatest(taken.dn, kHighest) - black) / span;
     const bool at_limit = share < kLow ? exposure_s >= settings.exposure_max_s : exposure_s <= settings.exposure_min_s;
     if ((share >= kLow && share <= kHigh) || at_limit) return frames > 1 ? picture(exposure_s, frames) : taken;
-    // Of a saturated picture nothing is known but that it is too bright.
+    // A saturated picture says only that it is too bright.
     const double factor = share > 0.95 ? 0.15 : kWanted / std::max(share, 0.02);
     exposure_s = whole_microseconds(exposure_s * factor);
     exposure_s = std::clamp(exposure_s, settings.exposure_min_s, settings.exposure_max_s);

@@ -28,9 +28,9 @@ struct ProcedureSettings {
   int focus_steps = 11, fine_focus_steps = 9;
   int grey_levels = 8;
   int count_level_step = 1;  ///< 2: every second of the 24 levels
-  int frames = 4;            ///< of each picture of the geometry
+  int frames = 4;            ///< images of each picture of the geometry
   double exposure_min_s = 5e-5, exposure_max_s = 0.4;
-  std::uint64_t seed = 1;  ///< of the places of the dots held out
+  std::uint64_t seed = 1;  ///< random stream of the places of the dots held out
 };
 
 /// A third of the pictures, for a test of the whole path: its figures are two to three times less precise.
@@ -67,9 +67,9 @@ class Session {
   Bench bench;
   ProcedureSettings settings;
   BenchCalibration result;  ///< filled step by step
-  Response response;        ///< of the display, as far as known
+  Response response;        ///< response of the display, as far as it has been measured
   double camera_noise_dn = 1.0;
-  std::vector<Residual> residuals;  ///< of the dots held out
+  std::vector<Residual> residuals;  ///< dots held out
 
  private:
   twins::camera::Optics optics_;

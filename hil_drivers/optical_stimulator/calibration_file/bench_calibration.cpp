@@ -8,7 +8,7 @@ namespace {
 
 struct Cell {
   std::size_t index;
-  double share;  ///< of the next node
+  double share;  ///< share of the next node
 };
 
 Cell cell_of(double coordinate, double first, double step, int nodes) {

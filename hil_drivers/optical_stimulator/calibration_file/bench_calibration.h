@@ -27,8 +27,8 @@ struct Validity {
   double rail_display_mm = 0.0;  ///< position of the axis of the display: the focus
   int display_width_px = 1920, display_height_px = 1200;
   double display_rate_hz = 60.0;
-  twins::camera::Region region{710, 200, 500, 800};  ///< of the camera, to which the figures "region" refer
-  double exposure_s = 0.2;                           ///< of the flight's images
+  twins::camera::Region region{710, 200, 500, 800};  ///< part of the detector to which the figures "region" refer
+  double exposure_s = 0.2;                           ///< exposure of the flight's images
 };
 
 /// Relative light of a full display pixel over the display, both lenses' vignetting included: bilinear between the
@@ -38,7 +38,7 @@ struct UniformityGrid {
   fsw::Vector2 first_px{0.0, 0.0};  ///< display pixel of the first node
   fsw::Vector2 step_px{1.0, 1.0};
   std::vector<double> values;  ///< row by row, 1 on average over the nodes
-  double sigma = 0.0;          ///< of a value
+  double sigma = 0.0;          ///< standard deviation of the value
 
   [[nodiscard]] double at(const fsw::Vector2& display_px) const;
 };
@@ -55,12 +55,12 @@ struct CountsToLight {
 
   /// full_pixel / black_pixel.
   [[nodiscard]] double contrast() const { return full_pixel_electrons_per_s.value / black_pixel_electrons_per_s.value; }
-  /// Of the formula above, without uniformity and black level.
+  /// Returns the light by the formula above, without uniformity and black level.
   [[nodiscard]] double electrons_per_s(double count) const;
 };
 
 struct HotPixel {
-  int x = 0, y = 0;  ///< of the detector
+  int x = 0, y = 0;  ///< pixel of the detector
   double electrons_per_s = 0.0;
 };
 
@@ -68,7 +68,7 @@ struct CameraFigures {
   Figure offset_dn;
   Figure gain_dn_per_electron;
   Figure read_noise_electrons;
-  Figure background_electrons_per_s;  ///< of a camera pixel with the display black: black level and dark current
+  Figure background_electrons_per_s;  ///< light of a camera pixel with the display black: black level and dark current
   Figure point_spread_sigma_px;  ///< image of a displayed point (counts of sigma 0.5 display pixels), camera pixels
   int bits = 12;
   std::vector<HotPixel> hot_pixels;
@@ -82,7 +82,7 @@ struct ResidualFigures {
 
 struct HeldOutResiduals {
   ResidualFigures region, detector;                        ///< with the field terms
-  ResidualFigures region_lens_terms, detector_lens_terms;  ///< of lens terms alone
+  ResidualFigures region_lens_terms, detector_lens_terms;  ///< figures of the lens terms alone
   bool goal_reached = false;                               ///< the goals of calibrate/goals.h
 };
 

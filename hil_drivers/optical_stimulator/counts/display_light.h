@@ -14,7 +14,7 @@ namespace vbar::optical_stimulator {
 struct DisplayResponse {
   double gamma = 2.2;
   double first_count = 0.0;  ///< D0: above it a pixel emits light
-  double contrast = 1e5;     ///< of full to black
+  double contrast = 1e5;     ///< ratio of full to black
 };
 
 class DisplayLight {
@@ -29,7 +29,7 @@ class DisplayLight {
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
 
-  /// Of a full pixel, less the black level.
+  /// Returns the light of a full pixel, less the black level.
   [[nodiscard]] double full_electrons(int x, int y) const {
     return full_electrons_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
                            static_cast<std::size_t>(x)];

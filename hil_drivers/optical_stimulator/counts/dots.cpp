@@ -8,7 +8,7 @@
 namespace vbar::optical_stimulator {
 namespace {
 
-/// Of a unit Gaussian over the pixel of that distance from its centre.
+/// Returns the integral of a unit Gaussian over the pixel at that distance from its centre.
 double pixel_integral(double distance, double sigma) {
   const double scale = 1.0 / (std::sqrt(2.0) * sigma);
   return 0.5 * (std::erf((distance + 0.5) * scale) - std::erf((distance - 0.5) * scale));

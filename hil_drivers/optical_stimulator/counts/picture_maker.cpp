@@ -10,7 +10,7 @@ namespace {
 using twins::camera::Region;
 
 constexpr int kRing = 2;                // px about a patch, that hold little light beside a point
-constexpr double kRingLight = 0.02;     // of the light of the patch
+constexpr double kRingLight = 0.02;     // share of the light of the patch
 constexpr double kLargestSquare = 9.0;  // px^2
 constexpr int kWindow = kPatchReach + kRing;
 
@@ -47,7 +47,7 @@ bool PictureMaker::is_maximum(int x, int y) const {
   for (int dy = -1; dy <= 1; ++dy)
     for (int dx = -1; dx <= 1; ++dx) {
       const double there = wanted_at(x + dx, y + dy);
-      const bool is_before = dy < 0 || (dy == 0 && dx < 0);  // of equals the first
+      const bool is_before = dy < 0 || (dy == 0 && dx < 0);  // the first of equals counts
       if (there > here || (there == here && is_before)) return false;
     }
   return true;
@@ -75,7 +75,7 @@ void PictureMaker::find_points() {
   const Region& region = wanted_->region;
   for (int y = region.y + kWindow; y < region.y + region.height - kWindow; ++y)
     for (int x = region.x + kWindow; x < region.x + region.width - kWindow; ++x) {
-      constexpr double kNoticed = 0.5;  // of the least light
+      constexpr double kNoticed = 0.5;  // share of the faintest light
       if (wanted_at(x, y) < kNoticed * light_.least_fraction() * light_.full_electrons(x, y)) continue;
       Point point{x, y, 0.0};
       if (is_maximum(x, y) && is_compact(point)) points_.push_back(point);

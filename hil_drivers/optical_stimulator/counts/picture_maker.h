@@ -20,7 +20,7 @@ namespace vbar::optical_stimulator {
 
 struct PictureFigures {
   int points = 0;          ///< drawn with matched counts
-  int clipped_points = 0;  ///< of these, those of which not all light is shown
+  int clipped_points = 0;  ///< points of which not all light is shown
   double wanted_electrons = 0.0;
   double clipped_electrons = 0.0;  ///< wanted but not shown, as no pixel is brighter than full
 };
@@ -36,7 +36,7 @@ class PictureMaker {
  private:
   struct Point {
     int x = 0, y = 0;
-    double electrons = 0.0;  // of its patch
+    double electrons = 0.0;  // light of the patch
   };
 
   [[nodiscard]] double wanted_at(int x, int y) const;

@@ -130,7 +130,7 @@ struct Display::Window {
     SDL_QuitSubSystem(SDL_INIT_VIDEO);
   }
 
-  /// Of the window now: it is another one after a change of mode.
+  /// Returns the surface of the window now: it is another one after a change of mode.
   SDL_Surface* surface() {
     SDL_PumpEvents();
     SDL_Surface* const now = SDL_GetWindowSurface(window);

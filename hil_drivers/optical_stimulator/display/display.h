@@ -14,7 +14,7 @@ struct DisplaySettings {
   std::string x_display;  ///< ":7"; empty: that of the environment
   std::string output;     ///< its name ("HDMI-1"); empty: the only one
   int width = 1920, height = 1200;
-  std::chrono::milliseconds answer_limit{5000};  ///< of the X server, for a picture; then it counts as lost
+  std::chrono::milliseconds answer_limit{5000};  ///< wait for the X server; then it counts as lost
 };
 
 class Display {

@@ -34,7 +34,7 @@ struct ChebyshevTerms {
 
 struct FieldValue {
   fsw::Vector2 offset_px = fsw::Vector2::Zero();
-  fsw::Matrix2 jacobian = fsw::Matrix2::Zero();  ///< of the offset by the display point
+  fsw::Matrix2 jacobian = fsw::Matrix2::Zero();  ///< derivative of the offset by the display point
 };
 
 [[nodiscard]] FieldValue value_of(const ChebyshevField& field, const fsw::Vector2& pixel);

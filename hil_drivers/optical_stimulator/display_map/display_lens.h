@@ -15,8 +15,8 @@ struct LensTerms {
 
   std::array<double, 2> centre_px{959.5, 599.5};  ///< where the lens axis meets the display
   double scale_px = 6000.0;                       ///< display pixels per unit of the tangent
-  double rotation_rad = 0.0;                      ///< of the display about the boresight
-  std::array<double, 2> tilt_rad{};               ///< of the display about its x and y axes; OpenCV's tau_x, tau_y
+  double rotation_rad = 0.0;                      ///< rotation of the display about the boresight
+  std::array<double, 2> tilt_rad{};               ///< tilt of the display about its x and y axes; OpenCV's tau_x, tau_y
   std::array<double, 5> distortion{};             ///< k1, k2, p1, p2, k3
 
   [[nodiscard]] std::array<double, kCount> values() const;

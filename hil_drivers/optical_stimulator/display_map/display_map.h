@@ -19,7 +19,7 @@ struct DayCorrection {
 };
 
 struct DisplayMapParameters {
-  int width_px = 1920, height_px = 1200;  ///< of the display
+  int width_px = 1920, height_px = 1200;  ///< size of the display
   LensTerms lens;
   ChebyshevField field;  ///< added to what the lens terms give
 };
@@ -58,7 +58,7 @@ class DisplayMap final : public twins::camera::Projection {
   std::array<double, LensTerms::kCount> lens_;
   fsw::Vector2 middle_px_, shift_px_;
   fsw::Matrix2 correction_;
-  double radius_limit_;  ///< of the tangent plane: distortion is a polynomial inside
+  double radius_limit_;  ///< limit in the tangent plane: distortion is a polynomial inside
   double focal_length_px_;
 };
 

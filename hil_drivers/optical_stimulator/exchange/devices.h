@@ -20,7 +20,7 @@ class Screen {
 };
 
 struct CameraFrame {
-  std::vector<std::uint16_t> dn;  ///< of the region, rows from the top
+  std::vector<std::uint16_t> dn;  ///< pixels of the region, rows from the top
   int packets_resent = 0;
   int tries = 1;           ///< triggers until it was whole
   double receive_s = 0.0;  ///< wall clock, from the trigger

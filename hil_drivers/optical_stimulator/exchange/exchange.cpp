@@ -99,7 +99,7 @@ void Exchange::reconnect(const std::string& reason, ExchangedImage& image) {
 
 bool Exchange::is_accepted(const CameraFrame& frame, ExchangedImage& image, Trouble& trouble) const {
   const double white_dn = settings_.gain_dn_per_electron * settings_.white_electrons;
-  constexpr double kContrast = 0.2;  // of the white level: less is not a strip
+  constexpr double kContrast = 0.2;  // share of the white level: less is not a strip
   const StripReading reading = read_strip(frame.dn, settings_.width, kContrast * white_dn);
   switch (reading.status) {
     case StripStatus::kNone:

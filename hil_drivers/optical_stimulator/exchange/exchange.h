@@ -15,25 +15,25 @@
 namespace vbar::optical_stimulator {
 
 struct ExchangeSettings {
-  int width = 500;                           ///< of the camera's region
+  int width = 500;                           ///< width of the camera's region
   std::chrono::nanoseconds settle{};         ///< from the picture on the screen to the trigger
   std::chrono::nanoseconds display_frame{};  ///< further wait before another try
   double gain_dn_per_electron = 0.125;
-  double white_electrons = 12000.0;  ///< of the strip, as calibrated
+  double white_electrons = 12000.0;  ///< light of the white cells of the strip, as calibrated
   double brightness_tolerance = 0.05;
   int retries = 3;
   std::uint16_t first_frame = 1;            ///< number of the first picture
-  std::chrono::milliseconds absence{5000};  ///< of the camera, after which the run ends
+  std::chrono::milliseconds absence{5000};  ///< absence of the camera after which the run ends
 };
 
 struct ExchangedImage {
-  std::vector<std::uint16_t> dn;  ///< of the camera's region below the strip
+  std::vector<std::uint16_t> dn;  ///< camera's region below the strip
   std::uint16_t frame = 0;        ///< number of the picture
   int tries = 1;                  ///< images taken for it
-  int stale = 0;                  ///< of these, those that showed another picture
+  int stale = 0;                  ///< tries that showed another picture
   int packets_resent = 0;
   int reconnects = 0;
-  double brightness = 0.0;               ///< of the strip, relative to the calibration
+  double brightness = 0.0;               ///< brightness of the strip, relative to the calibration
   double show_s = 0.0, receive_s = 0.0;  ///< wall clock, of all tries
 };
 
@@ -53,7 +53,7 @@ class Exchange {
   void cancel() { is_cancelled_ = true; }
 
  private:
-  struct Trouble;  // of one picture so far
+  struct Trouble;  // Counts the failures of one picture so far.
 
   CameraFrame take_frame(ExchangedImage& image);
   void reconnect(const std::string& reason, ExchangedImage& image);

@@ -17,7 +17,7 @@ using fsw::Vector2;
 using twins::camera::CameraSettings;
 using twins::camera::Region;
 
-/// Of a point on the display, px. A smaller one is not shown better, as half of it then is in one pixel.
+/// Width of a point on the display, px. A smaller one is not shown better, as half of its light then is in one pixel.
 constexpr double kDisplaySpread_px = 0.5;
 
 }  // namespace
@@ -64,7 +64,7 @@ Region display_region(const Region& camera_region, const CameraSettings& camera,
     low = low.cwiseMin(*pixel);
     high = high.cwiseMax(*pixel);
   };
-  constexpr int kSteps = 32;  // of each edge
+  constexpr int kSteps = 32;  // points of each edge
   for (int k = 0; k <= kSteps; ++k) {
     const double x = camera_region.x + k * (camera_region.width - 1.0) / kSteps;
     const double y = camera_region.y + k * (camera_region.height - 1.0) / kSteps;

@@ -22,7 +22,7 @@ using twins::camera::Region;
 constexpr double kArcsec = M_PI / 648000.0;
 constexpr double kDotSigma_px = 0.7;
 constexpr double kDotElectrons = 6e4;      // a third of the full well in the brightest camera pixel
-constexpr double kGreyElectrons = 8000.0;  // of a camera pixel
+constexpr double kGreyElectrons = 8000.0;  // light of a camera pixel
 constexpr int kDotImages = 4;
 constexpr double kApart_px = 24.0, kMargin_px = 16.0;
 

@@ -25,8 +25,8 @@ struct SelfCheckFigures {
   int dots = 0;                  ///< found
   double residual_arcsec = 0.0;  ///< mean, after the correction
   DayCorrection correction;
-  double brightness = 0.0;  ///< of the grey frame, relative to the calibration
-  double noise = 0.0;       ///< of black frames, likewise
+  double brightness = 0.0;  ///< brightness of the grey frame, relative to the calibration
+  double noise = 0.0;       ///< noise of black frames, relative to the calibration
   double offset = 0.0;      ///< likewise
   int new_hot_pixels = 0;   ///< in the region of the image
 };

@@ -24,7 +24,7 @@ class FrameStrip {
   /// Replaces the pixels of all cells.
   void draw(std::uint16_t frame, Picture& picture) const;
 
-  /// Of a camera pixel in the white reference cell, as its counts give: near the electrons asked for.
+  /// Returns the light of a camera pixel in the white reference cell, as its counts give: near the electrons asked for.
   [[nodiscard]] double white_electrons() const { return white_electrons_; }
 
  private:

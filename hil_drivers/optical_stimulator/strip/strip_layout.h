@@ -19,7 +19,7 @@ inline constexpr int kStripRows = 48;
 inline constexpr int kCells = 24, kCellSide = 20, kCellsTop = 8;
 inline constexpr int kNumberBits = 16, kCheckBits = 4;
 
-/// Of each cell: white or black.
+/// State of each cell: white or black.
 using Cells = std::array<bool, kCells>;
 
 [[nodiscard]] Cells cells_of(std::uint16_t frame);

@@ -19,7 +19,7 @@ struct StripReading {
   StripStatus status = StripStatus::kNone;
   std::uint16_t frame = 0;  ///< if it has been read
   double black_dn = 0.0;    ///< mean of the darkest cell
-  double white_dn = 0.0;    ///< of the brightest; if it has been read: of the references
+  double white_dn = 0.0;    ///< level of the brightest cells; if the strip has been read: of the references
 };
 
 /// `dn`: an image of that width, the strip's rows first; at least kStripRows of it. Cells that differ by less than

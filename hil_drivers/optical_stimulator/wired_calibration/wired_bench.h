@@ -17,8 +17,8 @@ struct WiredBenchSettings {
   int packet_size = 1400;
   std::chrono::milliseconds settle{50};  ///< from a picture on the screen to its light
   std::chrono::milliseconds timeout{10000};
-  int retries = 5;                             ///< of an image
-  int width = 1920, height = 1200, bits = 12;  ///< of the camera
+  int retries = 5;                             ///< tries for an image
+  int width = 1920, height = 1200, bits = 12;  ///< size and resolution of the camera
 };
 
 class WiredBench {

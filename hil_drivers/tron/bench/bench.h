@@ -35,7 +35,7 @@ namespace vbar::tron::bench {
 struct BenchPlace {
   std::filesystem::path data;       ///< folder of the project's data
   std::filesystem::path directory;  ///< for sockets, addresses.json, faults.jsonl, truth.csv, summary.json
-  std::filesystem::path truth;      ///< of truth.csv; empty: in `directory`
+  std::filesystem::path truth;      ///< path of truth.csv; empty: in `directory`
   DriverPorts ports;
 };
 
@@ -68,7 +68,7 @@ class Bench {
   void write_addresses() const;
 
   BenchSettings settings_;
-  std::uint16_t vicon_port_;  ///< of the driver
+  std::uint16_t vicon_port_;  ///< port of the driver
   bench_lines::BenchDirectory directory_;
   World world_;
   Robots robots_;

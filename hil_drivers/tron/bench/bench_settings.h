@@ -40,7 +40,7 @@ struct BenchSettings {
   CameraIdentity identity;
   SensorSettings sensor;
   CaptureErrorSizes capture;
-  std::size_t vicon_block_bytes = 1024;  ///< of a datagram; 0: as long as its objects
+  std::size_t vicon_block_bytes = 1024;  ///< size of a datagram; 0: as long as its objects
   LightErrorSizes lights;
   GapSettings gap;
   std::vector<Fault> faults;

@@ -30,7 +30,7 @@ class CaptureView {
  private:
   struct Object {
     std::vector<Marker> markers;
-    fsw::Vector3 low_m, high_m;  ///< of the body that hides
+    fsw::Vector3 low_m, high_m;  ///< box of the body that hides
   };
   [[nodiscard]] Eigen::Isometry3d T_L_body(CaptureObject object, const Posture& posture) const;
   [[nodiscard]] std::size_t located(CaptureObject object, const Posture& posture) const;

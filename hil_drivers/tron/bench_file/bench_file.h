@@ -34,17 +34,19 @@ struct AxisLimits {
 /// forearm; the flange is d6 from the wrist. Flange frame: z away from the wrist, x down at zero angles (R_base_flange
 /// = [0 0 1; 0 1 0; -1 0 0], rotation of 90 deg about y).
 struct ArmDesign {
-  std::string type;  ///< of the manufacturer
+  std::string type;  ///< designation of the manufacturer
   double d1_m = 0.0, a1_m = 0.0, a2_m = 0.0, a3_m = 0.0, d4_m = 0.0, d6_m = 0.0;
   std::array<AxisLimits, kJoints> axes{};
-  /// Of the capsules that stand for its bodies in collision checks: column (base to A2), upper arm, forearm, wrist.
+  /// Radii of the capsules that stand for its bodies in collision checks: column (base to A2), upper arm, forearm,
+  /// wrist.
   std::array<double, 4> body_radius_m{};
 };
 
 /// How an arm stands.
 struct BasePose {
-  fsw::Vector3 position_m = fsw::Vector3::Zero();  ///< of the base, L; of the arm on the track with the carriage at 0
-  fsw::Vector3 rpy_rad = fsw::Vector3::Zero();     ///< R_L_base = Rz(yaw) Ry(pitch) Rx(roll), given as roll, pitch, yaw
+  fsw::Vector3 position_m =
+      fsw::Vector3::Zero();  ///< place of the base, L; for the arm on the track, with the carriage at 0
+  fsw::Vector3 rpy_rad = fsw::Vector3::Zero();  ///< R_L_base = Rz(yaw) Ry(pitch) Rx(roll), given as roll, pitch, yaw
   [[nodiscard]] Eigen::Isometry3d T_L_base() const;
 };
 
@@ -55,8 +57,8 @@ struct TargetMount {
   std::string model = "tango";  ///< CAD model and keypoints, at full scale
   MountFace face = MountFace::kBottom;
   double stand_off_m = 0.25;   ///< from the flange to the face
-  double roll_rad = 0.0;       ///< of the body about the flange's z
-  double rod_radius_m = 0.03;  ///< of the rod between them
+  double roll_rad = 0.0;       ///< rotation of the body about the flange's z
+  double rod_radius_m = 0.03;  ///< radius of the rod between them
   fsw::Vector3 body_low_m = fsw::Vector3::Zero(), body_high_m = fsw::Vector3::Zero();  ///< box of the hull, full scale
   /// Full-scale body frame scaled by `scale`; the origin of T is the scaled origin of the body frame.
   [[nodiscard]] Eigen::Isometry3d T_flange_target(double scale) const;
@@ -64,7 +66,7 @@ struct TargetMount {
 
 struct CameraMount {
   double ahead_m = 0.15;  ///< projection centre from the flange along its z, which is the boresight
-  double roll_rad = 0.0;  ///< of the camera's x from the flange's x about the boresight
+  double roll_rad = 0.0;  ///< rotation of the camera's x from the flange's x about the boresight
   double body_radius_m = 0.05;
   std::string file = "tron";  ///< data/cameras/<file>.toml: the lens and detector as designed
   std::string model, serial;  ///< that the device has to state; empty: any
@@ -96,9 +98,9 @@ struct LightBoxes {
 };
 
 struct RobotLine {
-  std::string address;             ///< of the controller: EKI server; RSI comes from there
-  std::uint16_t rsi_port = 0;      ///< of this computer, to which the controller sends
-  std::uint16_t eki_port = 54600;  ///< of the controller
+  std::string address;             ///< host of the controller: EKI server; RSI comes from there
+  std::uint16_t rsi_port = 0;      ///< UDP port of this computer, to which the controller sends
+  std::uint16_t eki_port = 54600;  ///< TCP port of the controller
 };
 
 struct Robot {
@@ -124,12 +126,12 @@ struct SacnSettings {
   std::string address;  ///< unicast
   std::uint16_t port = 5568;
   std::uint16_t universe = 1;
-  int start_slot = 1;  ///< of 12 values of two slots, coarse first: lamp power, lamp place, boxes 1 to 10
+  int start_slot = 1;  ///< first of 12 values of two slots, coarse first: lamp power, lamp place, boxes 1 to 10
   int priority = 100;
 };
 
 struct MotionSettings {
-  double override_fraction = 0.5;  ///< of speed and acceleration
+  double override_fraction = 0.5;  ///< share of speed and acceleration
   double clearance_m = 0.05;
   double cable_turn_rad = 0.0;    ///< largest |A4 + A6| of the camera's arm since home
   double limit_margin_rad = 0.0;  ///< penalty closer to a limit
@@ -149,7 +151,7 @@ struct BenchFile {
   ViconSettings vicon;
   SacnSettings sacn;
   MotionSettings motion;
-  std::string camera_address;  ///< of the GigE camera
+  std::string camera_address;  ///< IP address of the GigE camera
 };
 
 /// Throws mission::MissionError that names file and line.

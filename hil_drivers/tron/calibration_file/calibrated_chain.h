@@ -14,7 +14,7 @@ template <typename T>
 using Rigid = Eigen::Transform<T, 3, Eigen::Isometry>;
 
 inline constexpr int kLinkErrors = 5;  ///< after each of A1..A5
-inline constexpr int kFlexes = 2;      ///< of A2 and A3
+inline constexpr int kFlexes = 2;      ///< A2 and A3 bend
 inline constexpr int kTrackErrors = 5;
 
 /// Lengths of an arm as designed, m; the names are those of ArmDesign.

@@ -34,9 +34,9 @@ struct CalibrationValidity {
   std::string date_utc;  ///< ISO 8601
   std::string bench;     ///< name of the bench file
   bool emulated = false;
-  std::uint64_t seed = 0;  ///< of the choice of poses and, if emulated, of the bench
+  std::uint64_t seed = 0;  ///< seed of the choice of poses and, if emulated, of the emulator
   std::string camera_model, camera_serial;
-  std::string data_sha256;  ///< of the file of raw data
+  std::string data_sha256;  ///< digest of the file of raw data
 };
 
 struct LensCalibration {
@@ -53,7 +53,7 @@ struct ArmCalibration {
   PoseFigures base;                                       ///< T_L_base; of the arm on the track, T_carriage_base
   std::array<double, kJoints> offset_rad{};               ///< added to the joints that the controller states
   std::array<std::array<double, 6>, kLinkErrors> link{};  ///< after A1..A5: rotation vector, rad; translation, m
-  std::array<double, kFlexes> flex_rad_m{};               ///< of A2 and A3, per metre of horizontal lever
+  std::array<double, kFlexes> flex_rad_m{};               ///< flex of A2 and A3, per metre of horizontal lever
   PoseFigures mount;                                      ///< X_C = T_flange_C, X_T = T_flange_T
 };
 
@@ -67,7 +67,7 @@ struct ViconCalibration {
   std::string rotation = "xyz";  ///< order of the matrices, found by the calibration
   PoseFigures T_C_object;        ///< OC in C
   PoseFigures T_object_T;        ///< T in OT
-  PoseFigures T_V_L;             ///< of the laboratory in the frame of motion capture
+  PoseFigures T_V_L;             ///< laboratory frame in the frame of motion capture
 };
 
 /// Covariance of an error of T_C_T in the camera's axes: rotation vector, rad (R_true = exp(error) R), and translation
@@ -86,7 +86,7 @@ struct CameraCalibration {
   int bits = 12;
   double offset_dn = 0.0;
   double read_noise_dn = 0.0;
-  /// Of the lamp at full power on a white patch that faces it, per second of exposure, DN above the offset.
+  /// Level of the lamp at full power on a white patch that faces it, per second of exposure, DN above the offset.
   double lamp_dn_per_s = 0.0;
 };
 
@@ -101,7 +101,7 @@ struct StageFigures {
   std::string stage;  ///< "mounts", "offsets and mounts", ... "fused"
   int poses = 0;
   ErrorFigures board;                 ///< against the pose of the board by the image
-  std::optional<ErrorFigures> truth;  ///< of an emulated bench
+  std::optional<ErrorFigures> truth;  ///< errors against the truth of an emulator
 };
 
 struct Calibration {

@@ -232,7 +232,7 @@ std::uint32_t BenchBodies::shaded_by(const ArmCapsules& arm, const Vector3& towa
 
 std::vector<Vector3> BenchBodies::lit_points(const OrientedBox& hull, const Vector3& towards_lamp) {
   constexpr double kTowardsCorner = 0.7;
-  constexpr double kGrazing = 0.05;  // of such a face the shadow does not matter
+  constexpr double kGrazing = 0.05;  // cosine below which the shadow on a face does not matter
   const Vector3 lamp_box = hull.T_L_box.linear().transpose() * towards_lamp;
   std::vector<Vector3> points;
   for (int axis = 0; axis < 3; ++axis) {

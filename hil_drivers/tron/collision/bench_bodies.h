@@ -14,7 +14,7 @@
 
 namespace vbar::tron {
 
-/// Of an arm, from its base to what it holds.
+/// Numbers the bodies of an arm, from its base to what it holds.
 enum ArmBody : std::size_t {
   kStand,   ///< carriage under the ceiling, or pedestal on the floor
   kColumn,  ///< base to A2
@@ -99,7 +99,7 @@ class BenchBodies {
 
   BenchFile bench_;
   ArmPair arms_;
-  std::array<double, kJoints> camera_reach_m_{}, target_reach_m_{};  ///< of each axis: farthest point that it turns
+  std::array<double, kJoints> camera_reach_m_{}, target_reach_m_{};  ///< farthest point that each axis turns
 };
 
 }  // namespace vbar::tron

@@ -9,7 +9,7 @@ namespace {
 using fsw::Vector3;
 
 constexpr double kPoint = 1e-24;  ///< squared length of a segment that is a point
-constexpr int kSections = 30;     ///< of the golden ratio: 0.618^30 is 5e-7
+constexpr int kSections = 30;     ///< steps of the golden ratio: 0.618^30 is 5e-7
 
 double point_box_distance(const Vector3& point, const Vector3& half) {
   return (point.cwiseAbs() - half).cwiseMax(0.0).norm();

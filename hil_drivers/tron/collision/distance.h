@@ -21,7 +21,7 @@ struct OrientedBox {
 /// Between two segments (Ericson 2004, section 5.1.9).
 [[nodiscard]] double segment_distance(const fsw::Vector3& a_from, const fsw::Vector3& a_to, const fsw::Vector3& b_from,
                                       const fsw::Vector3& b_to);
-/// Of a segment from a box; 0 if it enters it. To 1e-6 of the segment's length.
+/// Returns the distance of a segment from a box; 0 if it enters the box. The error is 1e-6 of the segment's length.
 [[nodiscard]] double box_distance(const fsw::Vector3& from, const fsw::Vector3& to, const OrientedBox& box);
 
 }  // namespace vbar::tron

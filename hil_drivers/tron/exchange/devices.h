@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "hil_drivers/tron/bench_file/bench_file.h"
-#include "hil_drivers/tron/hardware/robot_pair.h"
+#include "hil_drivers/tron/kinematics/posture.h"
 #include "hil_drivers/tron/placement/scene.h"
 
 namespace vbar::tron {
@@ -18,7 +18,7 @@ namespace vbar::tron {
 struct Place {
   Posture posture;
   double lamp_azimuth_rad = 0.0;
-  double sun_error_rad = 0.0;  ///< of the direction to the lamp
+  double sun_error_rad = 0.0;  ///< error of the direction to the lamp
   int hidden = 0;              ///< keypoints and centre that the arm hides
   int shaded = 0;              ///< lit points of the hull, four a face, in the shadow of an arm
 };
@@ -72,7 +72,7 @@ struct MeasuredPlace {
 };
 
 struct BenchFrame {
-  std::vector<std::uint16_t> dn;  ///< of the region, rows from the top
+  std::vector<std::uint16_t> dn;  ///< pixels of the region, rows from the top
   std::int64_t packets_resent = 0;
   int tries = 1;
 };

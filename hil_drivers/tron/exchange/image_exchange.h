@@ -15,10 +15,11 @@ struct ExchangeSettings {
   double correct_above_m = 0.5e-3, correct_above_rad = 3.5e-4;
   double fail_above_m = 5e-3, fail_above_rad = 5.2e-3;
   double lamp_speed_rad_s = 0.17;
-  double lamp_delay_s = 0.1;         ///< of bench time: nothing acknowledges a lighting level
-  int restarts_in_row = 2;           ///< interruptions of an image after which the run ends
-  double slipped_chi_square = 50.0;  ///< of arms and motion capture, six degrees of freedom: one in 10^8 of good ones
-  int disagreements_in_row = 5;      ///< of arms and motion capture, after which the run ends
+  double lamp_delay_s = 0.1;  ///< bench time: nothing acknowledges a lighting level
+  int restarts_in_row = 2;    ///< interruptions of an image after which the run ends
+  double slipped_chi_square =
+      50.0;  ///< limit between arms and motion capture, six degrees of freedom: one in 10^8 of good ones
+  int disagreements_in_row = 5;  ///< images at which arms and motion capture disagree, after which the run ends
 };
 
 struct SceneImage {

@@ -18,7 +18,7 @@ enum class FusionSources { kBoth, kArmsAlone };
 
 struct FusedPose {
   PoseEstimate pose;
-  double chi_square = 0.0;  ///< of the difference of both sources, 6 degrees of freedom
+  double chi_square = 0.0;  ///< difference of both sources, 6 degrees of freedom
   FusionSources sources = FusionSources::kBoth;
 };
 

@@ -21,7 +21,7 @@ constexpr int kVirtualPatience = 20;
 /// Cycles between two looks at the states of Ethernet KRL: the notice of a stop takes so long at most.
 constexpr std::uint64_t kLookEvery = 5;
 constexpr auto kPollInterval = std::chrono::milliseconds(20);
-/// Of RSI, while an arm comes to rest: a second.
+/// Number of starts of RSI while an arm comes to rest: a second.
 constexpr int kStartTries = 50;
 
 Posture posture_of(const rsi::AxisPositions& camera, const rsi::AxisPositions& target, double track_home_m) {

@@ -16,25 +16,13 @@
 
 namespace vbar::tron {
 
-/// A motion of both arms and the carriage, given for every robot cycle.
-struct Motion {
-  int cycles = 0;                               ///< of which the last is at rest
-  std::function<Posture(int cycle)> at;         ///< from 1
-  std::function<Motion(int cycle)> stop_after;  ///< slows down along the same path, after that cycle
-};
-
-enum class MotionEnd {
-  kArrived,
-  kInterrupted,  ///< both arms are at rest, or stopped by their controllers: recover()
-};
-
 struct RobotPairSettings {
   rsi::ClientSettings camera_rsi, target_rsi;
   eki::ClientSettings camera_eki, target_eki;  ///< host and port may be set later, before open()
   double track_home_m = 0.0;
   bool is_virtual = true;                           ///< the clock of the bench
   std::chrono::milliseconds start_patience{5000};   ///< wall clock, for the first state after RSI was started
-  std::chrono::milliseconds silence_patience{500};  ///< of a robot in a cycle; with the virtual clock 20 times as much
+  std::chrono::milliseconds silence_patience{500};  ///< silence in a cycle; virtual clock: 20 times as much
   double settle_limit_s = 5.0;                      ///< bench time
   double operator_timeout_s = 600.0;                ///< bench time
   /// Called after each cycle with their number, also by the thread that holds the arms.

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "hil_drivers/gige/camera/camera.h"
+#include "hil_drivers/tron/hardware/robot_pair.h"
 #include "hil_drivers/tron/robot/robot_files.h"
 #include "hil_drivers/tron/sacn/sender.h"
 #include "hil_drivers/tron/vicon/receiver.h"
@@ -17,7 +18,7 @@
 namespace vbar::tron {
 namespace {
 
-constexpr int kFrames = 20;     // of motion capture, averaged
+constexpr int kFrames = 20;     // frames of motion capture, averaged
 constexpr int kMoreCycles = 3;  // until the last of them has certainly been sent
 constexpr double kMoved_rad = 1e-6, kMoved_m = 1e-6;
 

@@ -17,7 +17,7 @@ namespace vbar::tron {
 struct DeviceSettings {
   BenchFile bench;
   std::string vicon_rotation;  ///< as the calibration found it; empty: as the bench file says
-  bool is_emulated = false;    ///< of a bench: any free ports of this computer, otherwise those of the bench file
+  bool is_emulated = false;    ///< an emulator: any free ports of this computer, by default those of the bench file
   twins::camera::Region region{160, 100, 1600, 1000};
   double exposure_s = 0.5e-3;
   int converter_bits = 12;

@@ -16,7 +16,7 @@
 
 namespace vbar::tron {
 
-/// Of a dark image: median, and the standard deviation of the middle two thirds as of a normal distribution.
+/// Describes a dark image: median, and the standard deviation of the middle two thirds as of a normal distribution.
 struct DarkLevel {
   double offset_dn = 0.0;
   double noise_dn = 0.0;
@@ -30,7 +30,7 @@ struct DarkLevel {
 
 /// Where the target is in an image, in rows of `width`.
 struct Outline {
-  static constexpr int kMargin_px = 1;  ///< of blur and of the measured pose
+  static constexpr int kMargin_px = 1;  ///< margin for blur and for the error of the measured pose
 
   int width = 0;
   std::vector<float> covered;      ///< fraction of a pixel's light that is the target's

@@ -44,7 +44,7 @@ FinishedImage ImageFinish::finish(const std::vector<std::uint16_t>& frame, std::
     const double of_earth = expected_.electrons(T_C_B, earth_light, camera_);
     const double measured =
         measured_electrons(finished.dn, mask, dark_.offset_dn, camera_.detector.gain_dn_per_electron);
-    // Of fewer electrons the noise of the mask's pixels decides.
+    // With fewer electrons the noise of the mask's pixels decides.
     constexpr double kLeast = 1e5;
     if (of_sun + of_earth > kLeast) finished.light_level = measured / (of_sun + of_earth);
     const double of_sun_diffuse = expected_diffuse_.electrons(T_C_B, sunlight, camera_);

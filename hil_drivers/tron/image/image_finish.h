@@ -14,7 +14,7 @@ namespace vbar::tron {
 
 struct FinishedImage {
   std::vector<std::uint16_t> dn;
-  std::optional<double> light_level;  ///< of the target, relative to the prediction; none of an unlit one
+  std::optional<double> light_level;  ///< light of the target, relative to the prediction; none if it is unlit
   /// What is left without the light predicted of the Earth, relative to the prediction of sunlight by the diffuse part
   /// of the surfaces: a glint depends on the gloss of the mock-up, a face that is not black does not. None where that
   /// prediction is faint.

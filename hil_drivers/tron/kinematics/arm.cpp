@@ -16,7 +16,7 @@ constexpr double kTurn = 2.0 * kPi;
 /// Below these a closed form leaves an angle open to rounding.
 constexpr double kSingularLength_m = 1e-9;
 constexpr double kSingularSine = 1e-9;
-/// Of the cosine of the elbow beyond 1: a wrist at full reach, rounded.
+/// Excess of the cosine of the elbow over 1: a wrist at full reach, rounded.
 constexpr double kReachRounding = 1e-12;
 
 Matrix3 about_x(double angle) {

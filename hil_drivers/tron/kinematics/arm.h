@@ -62,7 +62,7 @@ class Arm {
 
   ArmDesign design_;
   double forearm_m_;          ///< from the elbow to the wrist
-  double forearm_angle_rad_;  ///< of that line above the forearm's x
+  double forearm_angle_rad_;  ///< angle of that line above the forearm's x
 };
 
 }  // namespace vbar::tron

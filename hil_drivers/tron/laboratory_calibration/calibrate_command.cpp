@@ -26,7 +26,7 @@ namespace {
 
 using namespace calibrate;
 
-/// Of both commands, beside those of vbar: the figures miss their limits.
+/// Exit code of both commands, beside those of vbar: the figures miss their limits.
 constexpr int kMissed = 3;
 /// Against the board's pose by the image, medians of the fused pose: the paper's figures.
 constexpr double kTranslationGoal_mm = 2.9, kRotationGoal_deg = 0.35, kPixelGoal_px = 2.0;

@@ -14,8 +14,8 @@
 namespace vbar::tron::calibrate {
 namespace {
 
-constexpr int kTries = 3;               ///< of a motion that the controllers interrupt
-constexpr double kLightsDelay_s = 0.1;  ///< of bench time: nothing acknowledges a lighting level
+constexpr int kTries = 3;               ///< tries of a motion that the controllers interrupt
+constexpr double kLightsDelay_s = 0.1;  ///< bench time: nothing acknowledges a lighting level
 constexpr std::chrono::seconds kControlPatience{10};
 
 DeviceSettings device_settings(const WiredBenchSettings& settings) {

@@ -35,7 +35,7 @@ class WiredBench final : public CalibrationBench {
   void light(const LightShares& shares) override;
   [[nodiscard]] BenchImage take(double exposure_s) override;
 
-  /// Of an emulated bench: its table of true poses, until this object ends; empty for a laboratory.
+  /// Returns the emulator's table of true poses, which exists until this object ends; empty for a real testbed.
   [[nodiscard]] std::filesystem::path truth() const;
 
  private:

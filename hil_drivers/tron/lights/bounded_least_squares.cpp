@@ -12,7 +12,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Of the gradient, relative to its terms: what rounding leaves.
+// Rounding of the gradient, relative to its terms.
 constexpr double kRounding = 1e-12;
 
 enum class Bound { kLower, kUpper, kFree };

@@ -12,7 +12,7 @@ namespace vbar::tron {
 /// Light of the Earth at the target in laboratory axes.
 struct EarthLight {
   fsw::Vector3 direction_L = fsw::Vector3::UnitZ();  ///< to its middle, unit
-  double half_angle = 1.1;                           ///< of the disc, rad
+  double half_angle = 1.1;                           ///< angular radius of the disc, rad
   double ratio = 0.0;  ///< irradiance of an area that faces it, to that of one that faces the Sun
 };
 
@@ -20,7 +20,7 @@ struct EarthLight {
 using NormalIrradiances = Eigen::VectorXd;
 
 struct BoxPowers {
-  std::array<double, kBoxes> power{};  ///< of light, 0 to 1
+  std::array<double, kBoxes> power{};  ///< light, not the DMX value; 0 to 1
   double misfit = 0.0;                 ///< rms over the normals, relative to the largest irradiance of the Earth
 };
 
@@ -38,7 +38,7 @@ class BoxLight {
   /// Throws std::invalid_argument for a number that is not finite.
   [[nodiscard]] BoxPowers powers(const fsw::Vector3& centre_L, const EarthLight& earth) const;
 
-  /// Of the sphere: the mean half width of the target, m.
+  /// Returns the radius of the sphere: the mean half width of the target, m.
   [[nodiscard]] double radius_m() const { return radius_m_; }
 
  private:

@@ -14,7 +14,7 @@
 namespace vbar::tron {
 
 inline constexpr std::size_t kLightSources = 1 + kBoxes;
-/// Of LightTable: "lamp", "box 1" to "box 10".
+/// Returns the name of a source as in LightTable: "lamp", "box 1" to "box 10".
 [[nodiscard]] std::string light_source_name(std::size_t source);
 
 class LightResponse {
@@ -36,7 +36,7 @@ class LightResponse {
   std::vector<double> log_level_{-1.0, 0.0}, log_light_{-1.0, 0.0};
 };
 
-/// Of lamp and boxes. As default light is proportional to the level.
+/// Converts between light and level of lamp and boxes. By default light is proportional to the level.
 class PhotometricTable {
  public:
   PhotometricTable() = default;

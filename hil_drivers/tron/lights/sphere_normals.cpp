@@ -10,7 +10,7 @@ namespace {
 
 using fsw::Vector3;
 
-constexpr int kParts = 4;  // of an edge: 10 kParts^2 + 2 corners
+constexpr int kParts = 4;  // parts of an edge: 10 kParts^2 + 2 corners
 
 std::array<Vector3, 12> icosahedron() {
   std::array<Vector3, 12> corners;

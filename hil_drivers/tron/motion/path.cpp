@@ -42,10 +42,6 @@ ProgressLimits of_arm(const std::array<AxisLimits, kJoints>& axes, const Joints&
   return limits;
 }
 
-bool is_finite(const Posture& posture) {
-  return posture.camera_rad.allFinite() && posture.target_rad.allFinite() && std::isfinite(posture.carriage_m);
-}
-
 }  // namespace
 
 Posture between(const Posture& from, const Posture& to, double share) {

@@ -18,8 +18,8 @@ class AxisLimitsOfBench {
  public:
   explicit AxisLimitsOfBench(const BenchFile& bench);
 
-  /// Of the path parameter from 0 to 1; infinite if nothing moves. Parts of a path (one arm alone) combine by
-  /// slower_of.
+  /// Returns the limits of the path parameter from 0 to 1; infinite if nothing moves. Parts of a path (one arm alone)
+  /// combine by slower_of.
   [[nodiscard]] ProgressLimits of(const Posture& from, const Posture& to) const;
   [[nodiscard]] ProgressLimits of_camera_arm(const Joints& from, const Joints& to) const;
   [[nodiscard]] ProgressLimits of_target_arm(const Joints& from, const Joints& to) const;
@@ -52,7 +52,7 @@ class Path {
  private:
   struct Leg {
     Posture from, to;
-    SCurve curve;  ///< of the share
+    SCurve curve;  ///< motion of the share
     int first = 0, cycles = 0;
     double cycle_s = 0.004;
   };

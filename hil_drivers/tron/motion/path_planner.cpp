@@ -10,12 +10,8 @@ namespace {
 /// A posture may be this much beyond a limit by rounding, and the cable turned this much farther by a correction.
 constexpr double kLimitRounding = 1e-6;
 constexpr double kCableCorrection_rad = 0.035;
-/// Of the clearance, kept at a corrected posture.
+/// Share of the clearance that is kept at a corrected posture.
 constexpr double kCorrectedClearance = 0.5;
-
-bool is_finite(const Posture& posture) {
-  return posture.camera_rad.allFinite() && posture.target_rad.allFinite() && std::isfinite(posture.carriage_m);
-}
 
 bool is_within(const Arm& arm, const Joints& joints) {
   for (std::size_t k = 0; k < kJoints; ++k) {

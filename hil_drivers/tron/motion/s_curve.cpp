@@ -7,7 +7,7 @@ namespace vbar::tron {
 namespace {
 
 struct Durations {
-  double ramp_s = 0.0;    ///< of the acceleration from zero to its peak
+  double ramp_s = 0.0;    ///< ramp of the acceleration from zero to its peak
   double hold_s = 0.0;    ///< at that peak
   double cruise_s = 0.0;  ///< at constant speed
 };

@@ -7,8 +7,7 @@
 namespace vbar::tron {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kSmallA5_rad = 6.0 * kDegree;
+constexpr double kSmallA5_rad = 6.0 * (std::numbers::pi / 180.0);
 constexpr double kNearA1_m = 0.05;
 /// Seconds at a limit or in a singularity; less in proportion at a distance.
 constexpr double kPenalty_s = 1.0;

@@ -24,7 +24,7 @@ struct Candidates {
   std::size_t count = 0;
 };
 
-/// Of each branch within limits the full turns nearest to `from`.
+/// Returns, for each branch within limits, the full turns nearest to `from`.
 [[nodiscard]] Candidates candidates(const Arm& arm, const Eigen::Isometry3d& T_base_flange, const Joints& from,
                                     const CandidateRules& rules);
 

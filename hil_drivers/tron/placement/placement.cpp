@@ -24,7 +24,7 @@ constexpr double kYaw_rad = 55.0 * kDegree, kPitch_rad = 38.0 * kDegree;
 constexpr double kCarriage_m = 0.8;
 /// Spread of trials near the last placement.
 constexpr double kNear_m = 0.08, kNear_rad = 4.0 * kDegree, kNearCarriage_m = 0.15;
-/// Of those near the best one so far, relative to that.
+/// Spread of the trials near the best one so far, relative to the first spread.
 constexpr double kRefinement = 0.4;
 /// Camera to target and Sun closer to parallel than this: the turn about the line of sight is free.
 constexpr double kFreeTurn_rad = 5.0 * kDegree;
@@ -63,7 +63,7 @@ Vector3 towards_camera(double yaw, double pitch) {
 struct PlacementSearch::Trial {
   Vector3 target_L = Vector3::Zero();
   double yaw = 0.0, pitch = 0.0;
-  double carriage_ahead_m = 0.0;  ///< of the camera, along x
+  double carriage_ahead_m = 0.0;  ///< distance of the camera from the carriage along x
 };
 
 struct PlacementSearch::Search {
@@ -122,7 +122,7 @@ void PlacementSearch::judge_pose(const Trial& trial, const Eigen::Isometry3d& T_
   const ProgressLimits carriage = limits.of_carriage(search.from.carriage_m, carriage_m);
   const double lamp_s = search.lamp_rad ? std::abs(lamp_rad - *search.lamp_rad) / bench_.lamp.speed_rad_s : 0.0;
   const double earth_s = earth_ ? earth_(search.scene, T_L_C, T_L_T) : 0.0;
-  // Of each arm by itself, when it is asked for first.
+  // Judgement of each arm by itself, made when it is first asked for.
   struct Judged {
     ArmCapsules bodies;
     std::uint32_t hidden = 0, shaded = 0;

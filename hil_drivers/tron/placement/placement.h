@@ -24,7 +24,7 @@ struct Placement {
   double sun_error_rad = 0.0;  ///< between the Sun of the scene and the lamp
   int hidden = 0;              ///< points that an arm or the rod hides
   int shaded = 0;              ///< lit points of the hull in the shadow of an arm
-  double move_s = 0.0;         ///< of the straight path, the lamp's travel included
+  double move_s = 0.0;         ///< duration of the straight path, the lamp's travel included
   double cost_s = 0.0;
 };
 
@@ -39,9 +39,9 @@ struct PlacementSettings {
   int extension = 10;          ///< times as many trials while nothing without hidden points was found,
   int last_extension = 40;     ///< and while nothing was found at all
   int max_hidden = 3;          ///< points that may be hidden
-  std::uint64_t seed = 1;      ///< of the trials
-  double hidden_cost_s = 4.0;  ///< of each hidden point
-  double shaded_cost_s = 1.0;  ///< of each lit point of the hull, four a face, in an arm's shadow
+  std::uint64_t seed = 1;      ///< random stream of the trials
+  double hidden_cost_s = 4.0;  ///< cost of each hidden point
+  double shaded_cost_s = 1.0;  ///< cost of each lit point of the hull, four a face, in an arm's shadow
 };
 
 /// Cost, s, of the Earth's light that the boxes cannot make at a pose of camera and target in L.

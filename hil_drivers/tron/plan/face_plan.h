@@ -19,8 +19,8 @@ struct FacePlan {
   int clear = 0;   ///< nothing hidden
   int taken = 0;   ///< at most the accepted number of points hidden
   double sun_error_max_rad = 0.0;
-  std::vector<double> move_s, bench_s;                        ///< of those taken
-  std::vector<double> wall_s;                                 ///< of the search, of all
+  std::vector<double> move_s, bench_s;                        ///< durations of the images taken
+  std::vector<double> wall_s;                                 ///< durations of the search, of all images
   int detours = 0;                                            ///< paths over a retracted posture
   std::vector<std::pair<std::size_t, std::string>> failures;  ///< index of the image, reason
 
@@ -30,7 +30,7 @@ struct FacePlan {
 /// Bench time of an image beside its move and its exposure.
 struct ImageTimes {
   double settling_s = 0.5;
-  double correction_s = 0.0;  ///< of one correction, see correction_s_of
+  double correction_s = 0.0;  ///< duration of one correction, see correction_s_of
 };
 
 /// Duration of a correction by 0.2 deg of every axis and 2 mm of the carriage, s: of arms as mastered, calibrated.
@@ -45,7 +45,7 @@ using PlanProgress = std::function<bool(double share)>;
                                  const std::vector<std::size_t>& blocks, const PlacementSettings& settings,
                                  const std::filesystem::path& data_directory, const PlanProgress& progress = {});
 
-/// Of a sample, linear between its values; NaN if it is empty.
+/// Returns the quantile of a sample, linear between its values; NaN if it is empty.
 [[nodiscard]] double quantile(std::vector<double> sample, double share);
 
 }  // namespace vbar::tron

@@ -61,7 +61,7 @@ std::vector<MountFace> faces_of(const Options& options) {
   return faces;
 }
 
-/// Of every `stride` blocks of images the first.
+/// Returns the first of every `stride` blocks of images.
 std::vector<SceneAhead> sample_of(const std::vector<SceneAhead>& scenes, std::size_t stride,
                                   std::vector<std::size_t>& blocks) {
   std::vector<SceneAhead> sample;

@@ -22,7 +22,7 @@ class SceneTap final : public twins::PacketSource {
  public:
   struct Settings {
     twins::camera::CameraMount mount;
-    std::string model;  ///< of the target
+    std::string model;  ///< CAD model of the target
     fsw::GpsTime epoch;
     engine::Cadence images{fsw::GpsTime{}, fsw::duration_of_seconds(60)};
     double exposure_s = 0.0, scale = 1.0;

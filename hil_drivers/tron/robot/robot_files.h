@@ -14,7 +14,7 @@ inline constexpr const char* kTargetRobot = "target_robot";
 /// $VBAR_TRON_ROBOT if set, else this folder of the source tree that the program was built from.
 [[nodiscard]] std::filesystem::path robot_directory();
 
-/// Of kCameraRobot or kTargetRobot, in robot_directory(). Throws mission::MissionError.
+/// Returns the files of kCameraRobot or kTargetRobot, in robot_directory(). Throws mission::MissionError.
 [[nodiscard]] rsi::RobotFiles robot_files(const std::string& robot);
 
 }  // namespace vbar::tron

@@ -8,7 +8,8 @@
 
 namespace vbar::tron {
 
-/// Of the target of that CAD model, lengths times `scale`. Nothing if the exposure has no such object.
+/// Returns the scene with the target of that CAD model, lengths times `scale`. Nothing if the exposure has no such
+/// object.
 [[nodiscard]] std::optional<Scene> scene_of(const twins::camera::Exposure& exposure, const std::string& model,
                                             double scale);
 

@@ -25,8 +25,8 @@ struct CaptureAverage {
 struct CaptureCounts {
   std::uint64_t frames = 0;
   std::uint64_t frames_lost = 0;                                    ///< gaps of the frame numbers
-  std::uint64_t late_blocks = 0;                                    ///< of a frame before the last one; ignored
-  std::uint64_t restarts = 0;                                       ///< of the frame numbers
+  std::uint64_t late_blocks = 0;                                    ///< blocks of a frame before the last one; ignored
+  std::uint64_t restarts = 0;                                       ///< restarts of the frame numbers
   std::uint64_t unreadable = 0;                                     ///< datagrams
   std::uint64_t silent = 0, missing = 0, occluded = 0, frozen = 0;  ///< averages of an object
   std::string last_unreadable;                                      ///< why
@@ -46,7 +46,8 @@ class CaptureSource {
   /// drain() until there are `frames` since clear(), at most for `timeout` of wall clock.
   virtual int wait_for(int frames, std::chrono::milliseconds timeout) = 0;
 
-  /// Of the last `frames` since clear(). An object is tracked if it was in at least half of that number.
+  /// Returns the average of the last `frames` since clear(). An object is tracked if it was in at least half of that
+  /// number.
   [[nodiscard]] virtual CaptureAverage average(int frames, const Moved& moved) = 0;
 
   [[nodiscard]] virtual CaptureCounts counts() const = 0;

@@ -19,7 +19,7 @@ struct ObjectAverage {
   ObjectState state = ObjectState::kSilent;
   int frames = 0;  ///< averaged
   Eigen::Isometry3d T_V_object = Eigen::Isometry3d::Identity();
-  // Of one frame about the mean, root mean square of the three axes.
+  // Scatter of one frame about the mean, root mean square of the three axes.
   double translation_scatter_m = 0.0, rotation_scatter_rad = 0.0;
 };
 

@@ -17,7 +17,7 @@ namespace asio = boost::asio;
 using asio::ip::udp;
 using boost::system::error_code;
 
-constexpr int kSocketBufferBytes = 4 * 1024 * 1024;  // of seconds of frames
+constexpr int kSocketBufferBytes = 4 * 1024 * 1024;  // room for seconds of frames
 // A flood of datagrams does not hold the caller for ever.
 constexpr int kMaxDatagramsOfDrain = 100000;
 

@@ -19,7 +19,7 @@ struct ClientSettings {
   int device = 1;
   double microstep_um = 0.047625;
   double overshoot_um = 50.0;  ///< every place is approached from this far below it
-  double tolerance_um = 1.0;   ///< of the place reported after a move
+  double tolerance_um = 1.0;   ///< tolerance of the place reported after a move
   std::chrono::milliseconds answer_limit{2000};
   std::chrono::milliseconds move_limit{60000};
 };

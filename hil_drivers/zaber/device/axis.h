@@ -15,7 +15,7 @@ struct AxisSettings {
   double backlash_um = 3.0;       ///< the carriage lags behind the screw when it comes from above
   double repeatability_um = 0.5;  ///< one sigma, drawn for every place that is approached
   double speed_um_s = 20000.0;
-  double start_um = 50800.0;   ///< of the carriage when the power comes on
+  double start_um = 50800.0;   ///< place of the carriage when the power comes on
   bool moves_at_once = false;  ///< a move lasts no time: it is under way until the state is asked for
 };
 

@@ -38,10 +38,10 @@ struct Message {
   int device = 1;
   int axis = 0;
   std::optional<int> id = std::nullopt;
-  bool is_rejected = false;  ///< of a reply; RJ
-  bool is_busy = false;      ///< of a reply and an alert
+  bool is_rejected = false;  ///< reply RJ
+  bool is_busy = false;      ///< set in a reply and an alert
   std::string warning = "--";
-  std::string data = "0";  ///< of an information its text
+  std::string data = "0";  ///< in a reply or an alert its data, in an information its text
   bool has_checksum = false;
 
   friend bool operator==(const Message&, const Message&) = default;

@@ -47,7 +47,7 @@ struct FaultRule {
   bool has_axis = false;
   std::string_view value_key = {};
   mission::Range value_range = {};
-  std::string_view second_key = {};  ///< of a second number with the same range
+  std::string_view second_key = {};  ///< key of a second number with the same range
 };
 
 inline constexpr mission::Range kFraction{0.0, 1.0};
@@ -86,7 +86,7 @@ struct Fault {
   FaultKind kind = FaultKind::kBenchExit;
   /// Number of the exposure, from 0, before which it is injected; empty: at once.
   std::optional<std::uint64_t> frame = std::nullopt;
-  std::uint64_t frames = 0;  ///< of the exposures that it lasts for; 0: until the end
+  std::uint64_t frames = 0;  ///< number of exposures that it lasts for; 0: until the end
   double duration_s = 0.0;   ///< 0: until the end
   std::size_t axis = 0;      ///< from 0
   double value = 0.0, second = 0.0;

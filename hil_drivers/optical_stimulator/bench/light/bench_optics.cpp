@@ -26,8 +26,8 @@ Matrix3 rotation(const Vector3& vector) {
 struct BenchOptics::Ray {
   Vector2 plane;             ///< before distortion
   Vector2 direction;         ///< (x, y, 1), bench axes
-  double defocus_mm;         ///< of this point of the tilted display
-  double growth;             ///< of an area, by distortion
+  double defocus_mm;         ///< defocus of this point of the tilted display
+  double growth;             ///< growth of an area by distortion
   double light;              ///< relative, of the field
   Vector3 direction_camera;  ///< any length
 };
@@ -71,7 +71,7 @@ BenchOptics::Ray BenchOptics::ray(double u, double v) const {
   const auto& [k1, k2, p1, p2] = errors_.distortion;
   const double x = ray.plane.x(), y = ray.plane.y(), r2 = ray.plane.squaredNorm();
   const double radial = 1.0 + r2 * (k1 + r2 * k2);
-  const double gain = 2.0 * (k1 + 2.0 * r2 * k2);  // of radial, a unit of x and x
+  const double gain = 2.0 * (k1 + 2.0 * r2 * k2);  // derivative of radial, a unit of x and x
   ray.direction = {x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x),
                    y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y};
   const double xx = radial + gain * x * x + 2.0 * p1 * y + 6.0 * p2 * x;

@@ -35,7 +35,7 @@ struct OpticsErrors {
 
 /// What moves in a run.
 struct BenchState {
-  double separation_mm = 40.0;               ///< of the lenses
+  double separation_mm = 40.0;               ///< distance between the lenses
   double display_mm = 34.2857142857142857;   ///< display behind lens 2
   std::array<double, 2> display_moved_um{};  ///< drift, a bump
   double scale_ppm = 0.0;
@@ -45,11 +45,11 @@ struct BenchState {
 
 /// How one display pixel is seen.
 struct SeenPixel {
-  fsw::Vector2 pixel = fsw::Vector2::Zero();    ///< of the detector
+  fsw::Vector2 pixel = fsw::Vector2::Zero();    ///< pixel of the detector
   fsw::Vector2 coma_px = fsw::Vector2::Zero();  ///< displacement of the centroid, outwards
   double solid_angle = 0.0;                     ///< sr
   double transmitted = 1.0;                     ///< fraction, vignetting of the camera
-  double sigma_px = 0.0;                        ///< of the point spread, before the pixel's own width
+  double sigma_px = 0.0;  ///< standard deviation of the point spread, before the pixel's own width
 };
 
 class BenchOptics {
@@ -61,7 +61,7 @@ class BenchOptics {
   void set_state(const BenchState& state);
   [[nodiscard]] const BenchState& state() const { return state_; }
 
-  /// Of the place (u, v) of the display; an integer is the centre of a pixel.
+  /// Returns the image of the place (u, v) of the display; an integer is the centre of a pixel.
   [[nodiscard]] SeenPixel seen(double u, double v) const;
   /// The same place alone.
   [[nodiscard]] fsw::Vector2 detector_pixel(double u, double v) const;
@@ -84,7 +84,7 @@ class BenchOptics {
   const ErrorField* field_;
   twins::camera::CameraSettings camera_;
   twins::camera::Optics lens_;
-  fsw::Vector2 middle_;  ///< of the display, px
+  fsw::Vector2 middle_;  ///< middle of the display, px
   fsw::Matrix3 R_display_ = fsw::Matrix3::Identity();
   fsw::Matrix3 R_camera_ = fsw::Matrix3::Identity();
   BenchState state_;

@@ -14,7 +14,7 @@ struct FieldSettings {
   double light = 0.05;             ///< rms of the light, relative; its waves are as long as the display is wide
 };
 
-/// Of one place of the display.
+/// Holds the errors at one place of the display.
 struct FieldError {
   double x = 0.0, y = 0.0;  ///< rad
   double light = 0.0;       ///< relative

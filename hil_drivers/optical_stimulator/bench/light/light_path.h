@@ -16,7 +16,7 @@ namespace vbar::optical_stimulator::bench {
 /// What the display shows for a part of an exposure.
 struct ShownFrame {
   std::span<const std::uint8_t> counts;  ///< rows from the top
-  double fraction = 1.0;                 ///< of the exposure
+  double fraction = 1.0;                 ///< share of the exposure
 };
 
 struct LightPathSettings {
@@ -43,7 +43,7 @@ class LightPath {
   struct Seen {
     float x = 0.0F, y = 0.0F, coma_x = 0.0F, coma_y = 0.0F;
     float electrons = 0.0F;     ///< a second and cd/m^2
-    std::uint32_t version = 0;  ///< of the optics
+    std::uint32_t version = 0;  ///< version of the optics
     std::uint32_t profile = 0;
   };
 
@@ -63,7 +63,7 @@ class LightPath {
   double electrons_per_lux_s_;
   std::uint32_t version_ = 1;
   std::vector<Seen> seen_;
-  // Of the region of the last exposure.
+  // Region of the last exposure.
   twins::camera::Region region_;
   std::uint32_t region_version_ = 0;
   int cell_columns_, cell_rows_;

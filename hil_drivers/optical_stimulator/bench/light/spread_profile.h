@@ -8,7 +8,8 @@
 
 namespace vbar::optical_stimulator::bench {
 
-/// Of one width. The sum over the pixels is 1, and the centroid is the place, for every place.
+/// Spreads the light of a point with one width. The sum over the pixels is 1, and the centroid is the place, for every
+/// place.
 class SpreadProfile {
  public:
   explicit SpreadProfile(double sigma_px);

@@ -41,7 +41,7 @@ class ScreenWatch {
   ScreenWatch(const ScreenWatch&) = delete;
   ScreenWatch& operator=(const ScreenWatch&) = delete;
 
-  /// Of an exposure that began at `begin`; in pace "real" it has ended when this returns.
+  /// Returns the pictures of an exposure that began at `begin`; in pace "real" it has ended when this returns.
   [[nodiscard]] Pictures during(Clock::time_point begin, double exposure_s);
 
  private:

@@ -31,7 +31,7 @@ using CartesianPose = std::array<double, 6>;
 struct ControllerSettings {
   std::string name;            ///< "camera robot"
   Robot robot;                 ///< limits, home, address
-  std::optional<Track> track;  ///< of the robot on the track
+  std::optional<Track> track;  ///< track that carries the robot; none: it stands
   rsi::EthernetXml ethernet;   ///< address and port of the computer included
   rsi::ContextXml context;
   std::uint64_t first_ipoc = 1;  ///< time stamp of the first cycle; + 4 each
@@ -50,7 +50,7 @@ struct ControllerStatistics {
   std::uint64_t limit_trips = 0;       ///< speed, acceleration, software limit
   std::uint64_t rsi_starts = 0;
   AxisArray max_speed{}, max_acceleration{};  ///< commanded by valid answers: rad/s, rad/s2 (m)
-  std::uint64_t answers_within_1ms = 0;       ///< of wall clock since the request
+  std::uint64_t answers_within_1ms = 0;       ///< answers within 1 ms of wall clock since the request
   double max_answer_time_s = 0.0;
   std::string last_bad_answer;  ///< why it did not count
 };

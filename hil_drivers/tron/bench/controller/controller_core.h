@@ -46,8 +46,8 @@ struct Controller::Core {
   EkiServer server;
   ControllerStatistics statistics;
   std::function<AxisPositions()> on_standstill;
-  std::function<void()> on_datagram;   ///< of the clock
-  std::function<void()> on_rsi_start;  ///< of the clock
+  std::function<void()> on_datagram;   ///< callback of the clock
+  std::function<void()> on_rsi_start;  ///< callback of the clock
 
   std::uint64_t cycles = 0;  ///< since the program began
   std::uint64_t ipoc;

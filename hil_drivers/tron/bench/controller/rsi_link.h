@@ -17,7 +17,7 @@ namespace vbar::tron::bench {
 
 struct AnswerCounts {
   std::uint64_t bad = 0;       ///< broken, wrong Type or IPOC
-  std::uint64_t repeated = 0;  ///< of a cycle that was answered
+  std::uint64_t repeated = 0;  ///< answers to a cycle that was answered before
   std::uint64_t within_1ms = 0;
   double max_time_s = 0.0;  ///< wall clock from request to answer
   std::string last_bad;     ///< why it did not count

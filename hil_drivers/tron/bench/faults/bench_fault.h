@@ -34,7 +34,7 @@ enum class FaultKind {
   // Lights.
   kLampOut,
   kBoxOut,
-  kMountSlipped,  ///< of the mock-up, along its x, for good
+  kMountSlipped,  ///< the mock-up slips along its x, for good
   // Camera.
   kCameraAway,  ///< does not answer and sends nothing
   kCameraBusy,  ///< another program has control of it

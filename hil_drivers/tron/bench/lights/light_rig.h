@@ -37,7 +37,7 @@ inline constexpr std::array<LightErrorKey, 3> kLightErrorKeys{{
 }};
 
 struct TrueLights {
-  double lamp_power = 0.0;  ///< of light, relative to full power as designed
+  double lamp_power = 0.0;  ///< light, not the DMX value; relative to full power as designed
   double lamp_azimuth_rad = 0.0;
   std::array<double, kBoxes> box_power{};
 };

@@ -35,7 +35,7 @@ class SourceArbiter {
   /// Forgets sources that are silent.
   void advance(double bench_s);
 
-  /// Of the source that controls; empty if there is none.
+  /// Returns the slots of the source that controls; empty if there is none.
   [[nodiscard]] std::span<const std::uint8_t> slots() const;
   [[nodiscard]] bool is_controlled() const { return !sources_.empty(); }
   [[nodiscard]] const SourceCounts& counts() const { return counts_; }

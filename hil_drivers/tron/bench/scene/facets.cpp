@@ -134,7 +134,7 @@ std::vector<Facet> subdivided(const std::vector<Facet>& facets, double longest_m
 }
 
 void add_limb(const Limb& limb, std::size_t material, std::vector<Facet>& facets) {
-  constexpr int kAround = 16, kRings = 4;  // of a hemisphere
+  constexpr int kAround = 16, kRings = 4;  // divisions of a hemisphere
   const Vector3 along = limb.to_m - limb.from_m;
   const Vector3 axis = along.norm() > 1e-9 ? Vector3(along.normalized()) : Vector3(Vector3::UnitZ());
   const Vector3 x = axis.unitOrthogonal(), y = axis.cross(x);

@@ -14,8 +14,8 @@ namespace vbar::tron::bench {
 
 struct Facet {
   std::array<fsw::Vector3, 3> corners;
-  std::array<fsw::Vector3, 3> normals;            ///< of the smooth surface; zero: flat
-  std::array<double, 3> albedo_factors{1, 1, 1};  ///< of the Lambert part at the corners
+  std::array<fsw::Vector3, 3> normals;            ///< normals of the smooth surface; zero: flat
+  std::array<double, 3> albedo_factors{1, 1, 1};  ///< factors of the Lambert part at the corners
   std::size_t material = 0;
 };
 

@@ -42,7 +42,7 @@ constexpr double kEarthHalfAngle = 1.12;  // seen from an altitude of 710 km
 constexpr double kSunRadiusRad = 0.00465;
 constexpr double kLensLimit2 = 0.8;  // squared tangent, 42 deg: far beyond the field
 
-// Of what is not of the mock-up; indices follow those of the mock-up's materials.
+// Materials of what is not the mock-up; indices follow those of the mock-up's materials.
 enum ExtraMaterial : std::size_t { kArm, kRod, kWhite, kBlack };
 
 std::vector<std::array<float, 4>> extra_materials() {
@@ -59,7 +59,7 @@ std::vector<std::array<float, 4>> extra_materials() {
 }
 
 struct Sphere {
-  Vector3 centre = Vector3::Zero();  // of the body frame, m
+  Vector3 centre = Vector3::Zero();  // origin of the body frame, m
   double radius_m = 0.0;
 };
 
@@ -221,7 +221,7 @@ struct LabDrawing::Gl {
   camera::GlContext context;
   std::optional<GlProgram> shadow_program, surface_program, room_program;
   std::optional<Body> mock_up, board;
-  std::optional<GlTriangles> limbs, walls;  // of the drawing
+  std::optional<GlTriangles> limbs, walls;  // surfaces of the drawing
   std::optional<Canvas> canvas;
   std::optional<ShadowMaps> shadows;
   std::optional<camera::GlTable> earth_light;

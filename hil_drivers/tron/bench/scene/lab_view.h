@@ -27,7 +27,7 @@ struct LampState {
 
 struct LabView {
   Eigen::Isometry3d T_L_C = Eigen::Isometry3d::Identity();
-  Eigen::Isometry3d T_L_T = Eigen::Isometry3d::Identity();  ///< of the mock-up's half-scale body frame
+  Eigen::Isometry3d T_L_T = Eigen::Isometry3d::Identity();  ///< half-scale body frame of the mock-up
   std::optional<Eigen::Isometry3d> T_L_board;               ///< the calibration board hangs in place of the mock-up
   std::vector<Limb> arms;                                   ///< links of both; rod and pedestal are added
   LampState lamp;

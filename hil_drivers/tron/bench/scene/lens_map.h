@@ -9,7 +9,7 @@ namespace vbar::tron::bench {
 
 class LensMap {
  public:
-  /// Of `area` of the detector; may reach beyond it.
+  /// Computes the map of `area` of the detector; `area` may reach beyond the detector.
   LensMap(const twins::camera::CameraSettings& settings, const twins::camera::Region& area);
 
   [[nodiscard]] bool is_of(const twins::camera::CameraSettings& settings, const twins::camera::Region& area) const;

@@ -22,9 +22,9 @@ struct LampBeam {
   fsw::Vector3 centre_m = fsw::Vector3::Zero();    ///< L, where the irradiance is `irradiance`
   fsw::Vector3 direction = fsw::Vector3::UnitX();  ///< from there to the lamp
   fsw::Vector3 across = fsw::Vector3::UnitY(), up = fsw::Vector3::UnitZ();
-  double inverse_distance = 0.0;   ///< of the point from which the beam seems to come, 1/m
-  double source_radius_rad = 0.0;  ///< of the lamp as any lit point sees it
-  double radius_m = 0.0;           ///< of the beam at the centre
+  double inverse_distance = 0.0;   ///< reciprocal distance of the point from which the beam seems to come, 1/m
+  double source_radius_rad = 0.0;  ///< angular radius of the lamp as any lit point sees it
+  double radius_m = 0.0;           ///< radius of the beam at the centre
   std::array<double, 3> uneven{};  ///< relative irradiance 1 + a u + b v + c (u^2 + v^2), 1 at the edge
   double irradiance = 0.0;
 
@@ -59,7 +59,7 @@ struct BoxLight {
 /// Gauss's four points of a box of 0.6 m: its light to 0.4 % at 1 m, falling with the fourth power of the distance.
 [[nodiscard]] std::array<Emitter, 4> emitters_of(const BoxLight& box);
 
-/// Of an area; without anything in between.
+/// Returns the irradiance of an area; without anything in between.
 [[nodiscard]] double irradiance_of(const BoxLight& box, const fsw::Vector3& place_m, const fsw::Vector3& normal);
 
 /// Vector of irradiance at a place: its component along a unit vector is the irradiance of an area that faces there

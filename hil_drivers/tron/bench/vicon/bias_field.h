@@ -25,7 +25,7 @@ class BiasField {
   [[nodiscard]] fsw::Vector3 at(const Place& place) const;
 
  private:
-  static constexpr std::size_t kWaves = 48;  ///< of each component
+  static constexpr std::size_t kWaves = 48;  ///< number of waves of each component
   struct PlaneWave {
     Place wave_vector = Place::Zero();
     double phase = 0.0;

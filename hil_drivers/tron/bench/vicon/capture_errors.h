@@ -19,7 +19,7 @@ inline constexpr std::size_t kCaptureObjects = 2;
 
 /// One standard deviation of each error; defaults are those of data/benches/tron_emulated.toml.
 struct CaptureErrorSizes {
-  double frame_rotation_deg = 2.0;  ///< of V from the laboratory's frame, each axis
+  double frame_rotation_deg = 2.0;  ///< rotation of V from the laboratory's frame, each axis
   double frame_translation_mm = 50.0;
   double object_translation_mm = 50.0;  ///< origin of an object from that of the camera, of the target; axes: any
   double bias_mm = 0.3;                 ///< each axis, at any place
@@ -27,7 +27,7 @@ struct CaptureErrorSizes {
   double view_rotation_deg = 0.09;      ///< each axis; of an object at a place in an attitude
   double view_length_m = 0.3;           ///< over which that varies
   double view_length_deg = 20.0;        ///< ... of attitude
-  double noise_mm = 0.05;               ///< of a frame, each axis
+  double noise_mm = 0.05;               ///< noise of a frame, each axis
   double noise_deg = 0.02;
 
   /// Frame and axes of the objects as well are those of the laboratory, of camera and target.

@@ -16,7 +16,7 @@
 namespace vbar::tron::bench {
 
 struct ObjectStreamSettings {
-  std::string address = "127.0.0.1";  ///< of the computer
+  std::string address = "127.0.0.1";  ///< address of the driver's computer
   ViconSettings vicon;                ///< port of the computer, names, rate, order of the angles
   std::size_t block_bytes = 1024;     ///< see vicon::kBlockBytes
   std::uint32_t first_frame = 1;      ///< number of the first frame

@@ -14,26 +14,26 @@ struct ErrorSizes {
   double link_rotation_deg = 0.03;    ///< after each joint, about each axis
   double link_translation_mm = 0.3;   ///< ... along each axis
   double gear_deg = 0.006;            ///< amplitude of a wave with 1 to 3 periods a turn
-  double flex_deg_m = 0.05;           ///< of A2 a metre of horizontal lever: mean over benches, not a deviation
-  double flex_ratio_a3 = 1.5;         ///< of A3, to that of A2
+  double flex_deg_m = 0.05;           ///< flex of A2 a metre of horizontal lever: mean over benches, not a deviation
+  double flex_ratio_a3 = 1.5;         ///< flex of A3 relative to that of A2
   double flex_spread = 0.2;           ///< relative standard deviation of both
-  double repeatability_deg = 0.0015;  ///< of each joint at each standstill
+  double repeatability_deg = 0.0015;  ///< error of each joint at each standstill
   // Track.
   double track_scale = 1e-4;
   double track_offset_mm = 0.8;       ///< sideways and in height
   double track_rotation_deg = 0.035;  ///< roll, pitch, yaw
   double track_repeatability_mm = 0.02;
   // Mounts.
-  double mount_rotation_deg = 1.5;  ///< of the camera, and of the plate that mock-up, board and patch share
+  double mount_rotation_deg = 1.5;  ///< rotation of the camera, and of the plate that mock-up, board and patch share
   double mount_translation_mm = 4.0;
-  double plate_rotation_deg = 0.01;  ///< of each of these on the plate: dowel pins, places measured
+  double plate_rotation_deg = 0.01;  ///< rotation of each of these on the plate: dowel pins, places measured
   double plate_translation_mm = 0.05;
-  double base_rotation_deg = 0.3;  ///< of the arm on the floor
+  double base_rotation_deg = 0.3;  ///< rotation of the arm on the floor
   double base_translation_mm = 5.0;
   // Lens.
   double focal_length = 0.003;  ///< relative
   double principal_point_px = 4.0;
-  double distortion = 0.03;  ///< of each coefficient, relative
+  double distortion = 0.03;  ///< error of each coefficient, relative
 
   /// A bench exactly as designed.
   [[nodiscard]] static ErrorSizes none();

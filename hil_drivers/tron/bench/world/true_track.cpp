@@ -11,11 +11,14 @@ namespace {
 using engine::RandomStream;
 using fsw::Vector3;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kWavelengthLow_m = 2.5, kWavelengthHigh_m = 5.0;
 
 Wave wave(std::uint64_t seed, const char* error, double sigma) {
   return {seed, std::string("bench/track/") + error, sigma, kWavelengthLow_m, kWavelengthHigh_m};
+}
+
+Wave rotation_wave(std::uint64_t seed, const char* error, double sigma_deg) {
+  return wave(seed, error, sigma_deg * (std::numbers::pi / 180.0));
 }
 
 }  // namespace
@@ -27,9 +30,9 @@ TrueTrack::TrueTrack(const Track& design, const BasePose& base, const ErrorSizes
       repeatability_m_(1e-3 * sizes.track_repeatability_mm),
       sideways_m_(wave(seed, "sideways", 1e-3 * sizes.track_offset_mm)),
       height_m_(wave(seed, "height", 1e-3 * sizes.track_offset_mm)),
-      roll_rad_(wave(seed, "roll", sizes.track_rotation_deg * kDegree)),
-      pitch_rad_(wave(seed, "pitch", sizes.track_rotation_deg * kDegree)),
-      yaw_rad_(wave(seed, "yaw", sizes.track_rotation_deg * kDegree)),
+      roll_rad_(rotation_wave(seed, "roll", sizes.track_rotation_deg)),
+      pitch_rad_(rotation_wave(seed, "pitch", sizes.track_rotation_deg)),
+      yaw_rad_(rotation_wave(seed, "yaw", sizes.track_rotation_deg)),
       seed_(seed) {}
 
 Eigen::Isometry3d TrueTrack::T_L_base(double encoder_m) const {

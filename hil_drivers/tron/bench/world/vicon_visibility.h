@@ -33,8 +33,8 @@ struct Marker {
 class ViconVisibility {
  public:
   static constexpr std::size_t kCameras = 12;
-  static constexpr std::size_t kMinCameras = 2;  ///< of a marker
-  static constexpr std::size_t kMinMarkers = 3;  ///< of an object
+  static constexpr std::size_t kMinCameras = 2;  ///< cameras that see a marker
+  static constexpr std::size_t kMinMarkers = 3;  ///< markers located of an object
 
   explicit ViconVisibility(const BenchFile& laboratory);
 

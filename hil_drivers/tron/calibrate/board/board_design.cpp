@@ -6,7 +6,7 @@
 namespace vbar::tron::calibrate {
 namespace {
 
-constexpr int kBits = 4;  ///< of a marker along a side
+constexpr int kBits = 4;  ///< bits of a marker along a side
 
 /// The first markers of DICT_4X4_50 of OpenCV's module aruco, row by row, 1 white.
 constexpr std::array<std::uint16_t, 35> kMarkers{0xb532, 0x0f9a, 0x332d, 0x9946, 0x549e, 0x79cd, 0x9e2e, 0xc4f2, 0xfeda,

@@ -28,7 +28,7 @@ struct BoardDesign {
   [[nodiscard]] double height_m() const { return rows * square_m; }
   /// Inner corners of the squares.
   [[nodiscard]] int corner_count() const { return (columns - 1) * (rows - 1); }
-  /// Of a corner by its number, row by row from the upper left one, in B.
+  /// Returns a corner by its number, row by row from the upper left one, in B.
   [[nodiscard]] fsw::Vector3 corner(int id) const;
   /// Corners of the white patch in B: upper left, upper right, lower right, lower left, 5 mm off its edges.
   [[nodiscard]] std::array<fsw::Vector3, 4> patch() const;

@@ -12,12 +12,13 @@
 
 namespace vbar::tron::calibrate {
 
-/// Of the white patch with one source on.
+/// Holds the light of the white patch with one source on.
 struct LightSample {
-  std::string source;              ///< of LightTable
-  double level = 0.0;              ///< share of the largest value
-  double dn_per_s = 0.0;           ///< mean over the patch above that with all off, per second of exposure
-  double design_irradiance = 0.0;  ///< of the patch at full power as designed, to that of the lamp on an area facing it
+  std::string source;     ///< name of LightTable
+  double level = 0.0;     ///< share of the largest value
+  double dn_per_s = 0.0;  ///< mean over the patch above that with all off, per second of exposure
+  double design_irradiance =
+      0.0;  ///< irradiance of the patch at full power as designed, relative to that of the lamp on an area facing it
 };
 
 struct DarkFigures {

@@ -27,7 +27,7 @@ struct Measurement {
   Posture posture;  ///< as the controllers state it, at rest
   std::vector<Corner> corners;
   std::optional<ViconObjects> vicon;
-  /// Of an emulated bench: the true relative pose of the target's frame. Never used by a fit.
+  /// True relative pose of the target's frame, from an emulator. A fit never uses it.
   std::optional<Eigen::Isometry3d> true_T_C_T;
 };
 

@@ -15,10 +15,10 @@ inline constexpr int kMinCorners = 8;
 
 struct BoardPose {
   Eigen::Isometry3d T_C_B = Eigen::Isometry3d::Identity();
-  /// Of [rotation, rad; translation, m] in camera axes: R_true = exp(error) R, t_true = t + error.
+  /// Covariance of [rotation, rad; translation, m] in camera axes: R_true = exp(error) R, t_true = t + error.
   Matrix6 covariance = Matrix6::Identity();
-  double rms_px = 0.0;    ///< of the residuals, an axis, weighted as the fit
-  double sigma_px = 0.0;  ///< of a corner of this image: rms_px, at least kCornerSigma_px
+  double rms_px = 0.0;    ///< root mean square of the residuals, an axis, weighted as the fit
+  double sigma_px = 0.0;  ///< standard deviation of a corner of this image: rms_px, at least kCornerSigma_px
 };
 
 /// Gauss-Newton with Huber's weights from `start`; null with fewer than kMinCorners corners or where it does not

@@ -64,7 +64,7 @@ struct CameraChain {
   const Start* start;
   Joints joints_rad;
   double carriage_m;
-  int first_knot;  ///< of the four that act here
+  int first_knot;  ///< first of the four that act here
 
   CameraChain(const Start& s, const Posture& posture)
       : start(&s), joints_rad(posture.camera_rad), carriage_m(posture.carriage_m) {
@@ -434,8 +434,8 @@ class Fit {
     problem_.SetParameterBlockConstant(&values_.scale);
   }
 
-  /// Of camera arm, target arm, scale, knots, and both objects of motion capture, by the inverse of the normal matrix
-  /// of all parameters.
+  /// Returns the covariance of camera arm, target arm, scale, knots, and both objects of motion capture, by the inverse
+  /// of the normal matrix of all parameters.
   Eigen::MatrixXd chain_covariance() {
     std::vector<double*> blocks{values_.camera.data(), values_.target.data(), &values_.scale};
     for (auto& knot : values_.knots) blocks.push_back(knot.data());
@@ -537,7 +537,7 @@ Eigen::MatrixXd jacobian_of_arms(const FitResult& fit, const Posture& posture) {
   return jacobian;
 }
 
-/// Of T_C_T by motion capture, if its objects are seen where the arms say: by its two frames.
+/// Returns the Jacobian of T_C_T by motion capture, if its objects are seen where the arms say: by its two frames.
 Eigen::MatrixXd jacobian_of_vicon(const FitResult& fit, const Posture& posture) {
   constexpr double kStep = 1e-6;
   const Isometry3d T_C_T = T_C_T_of_arms(fit.calibration, posture);

@@ -18,7 +18,7 @@ enum class FitStage { kLens, kMounts, kOffsets, kFlexAndTrack, kWholeChain };
 struct FitImage {
   Measurement measurement;
   Eigen::Isometry3d T_C_T = Eigen::Isometry3d::Identity();  ///< by the board; where the fit starts
-  double sigma_px = 0.3;                                    ///< of its corners
+  double sigma_px = 0.3;                                    ///< standard deviation of its corners
 };
 
 /// Standard deviations of what is known before.
@@ -44,8 +44,8 @@ struct FitSettings {
 
 struct FitResult {
   Calibration calibration;
-  std::vector<Eigen::Isometry3d> T_C_T;  ///< of the images, by all sources together
-  Eigen::MatrixXd covariance;  ///< of the parameters of the whole chain and motion capture, after kWholeChain only
+  std::vector<Eigen::Isometry3d> T_C_T;  ///< poses of the images, by all sources together
+  Eigen::MatrixXd covariance;            ///< parameters of the whole chain and motion capture, after kWholeChain only
   bool is_usable = false;
   double cost = 0.0;
   int iterations = 0;

@@ -11,10 +11,10 @@ namespace vbar::tron::calibrate {
 /// does not: so depth, sides and rotations have covariances of their own.
 struct Scatter {
   double camera_rad = 0.0, target_rad = 0.0;
-  double place_m = 0.0;  ///< of each of both
+  double place_m = 0.0;  ///< standard deviation of each of both places
 };
 
-/// Of the error [rotation, rad; translation, m] of T_C_T in camera axes.
+/// Returns the covariance of the error [rotation, rad; translation, m] of T_C_T in camera axes.
 [[nodiscard]] Matrix6 scatter_covariance(const Scatter& scatter, const Eigen::Isometry3d& T_C_T);
 
 /// [rotation; translation] in camera axes that leads from `from` to `to`: R_to = exp(rotation) R_from.

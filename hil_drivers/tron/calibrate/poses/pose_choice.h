@@ -13,12 +13,12 @@ namespace vbar::tron::calibrate {
 
 struct PoseGoals {
   double range_low_m = 1.2, range_high_m = 5.6;
-  double tilt_high_rad = std::numbers::pi / 4.0;          ///< of the board to the line of sight
-  double yaw_high_rad = 40.0 * std::numbers::pi / 180.0;  ///< of the line of sight to L x
+  double tilt_high_rad = std::numbers::pi / 4.0;          ///< largest tilt of the board to the line of sight
+  double yaw_high_rad = 40.0 * std::numbers::pi / 180.0;  ///< largest angle of the line of sight to L x
   double pitch_high_rad = 25.0 * std::numbers::pi / 180.0;
-  double target_spread_m = 0.3;   ///< of the board's place about the middle of the lamp's beam
-  double carriage_ahead_m = 0.8;  ///< of the camera from the carriage along the track, at most
-  double share_in_image = 0.7;    ///< of the board's corners, at least
+  double target_spread_m = 0.3;   ///< distance of the board's place from the middle of the lamp's beam
+  double carriage_ahead_m = 0.8;  ///< largest distance of the camera from the carriage along the track
+  double share_in_image = 0.7;    ///< smallest share of the board's corners in the image
   double limit_margin_rad = 0.07;
 };
 

@@ -12,11 +12,11 @@ namespace vbar::tron::calibrate {
 
 struct CheckResult {
   std::vector<EvaluatedPose> fused;
-  double translation_limit_mm = 0.0, rotation_limit_deg = 0.0, pixel_limit_px = 0.0;  ///< of the medians
+  double translation_limit_mm = 0.0, rotation_limit_deg = 0.0, pixel_limit_px = 0.0;  ///< limits of the medians
   StageFigures figures;
   int beyond_gate = 0;  ///< postures at which arms and motion capture disagree
   bool is_valid = false;
-  std::string reason;  ///< of the first limit that is exceeded
+  std::string reason;  ///< description of the first limit that is exceeded
 };
 
 /// Judges measurements: medians of the fused pose against the board, at most twice those of the calibration and 1 mm,

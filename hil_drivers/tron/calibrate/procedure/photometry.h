@@ -25,7 +25,7 @@ namespace vbar::tron::calibrate {
 /// rise above that of the level before is left out.
 [[nodiscard]] std::vector<LightTable> light_tables(const std::vector<LightSample>& samples);
 
-/// Of the lamp at full power on the white patch facing it, DN per second; 0 if it was not measured.
+/// Returns the level of the lamp at full power on the white patch facing it, DN per second; 0 if it was not measured.
 [[nodiscard]] double lamp_dn_per_s(const std::vector<LightSample>& samples);
 
 }  // namespace vbar::tron::calibrate

@@ -11,7 +11,7 @@ namespace vbar::tron::calibrate {
 
 struct ProcedureSettings {
   int fitted = 208, judged = 110;
-  int light_levels = 8;  ///< of a source; 0: lights and camera are not measured
+  int light_levels = 8;  ///< levels of a source; 0: lights and camera are not measured
   std::uint64_t seed = 1;
   double exposure_s = 2e-3;  ///< where the search for the board's exposure begins
   double lamp_azimuth_rad = 1.2;

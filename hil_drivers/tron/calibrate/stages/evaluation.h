@@ -23,10 +23,10 @@ struct PoseError {
 struct EvaluatedPose {
   std::size_t measurement = 0;     ///< its index
   PoseError board;                 ///< against the pose by the image
-  std::optional<PoseError> truth;  ///< of an emulated bench
+  std::optional<PoseError> truth;  ///< error against the truth of an emulator
   double range_m = 0.0;
   FusionSources sources = FusionSources::kBoth;
-  double chi_square = 0.0;  ///< of kFused
+  double chi_square = 0.0;  ///< set for kFused
 };
 
 /// T_C_T of a source with a calibration; null without motion capture where it needs it. `fused`: what fusion said.

@@ -62,7 +62,7 @@ class BenchFitter {
                                            images_.size(), measurements_.fitted.size(), kMinImages));
   }
 
-  /// Of the target's origin instead of the board's.
+  /// Returns the covariance about the target's origin instead of the board's.
   [[nodiscard]] Matrix6 about_target(const BoardPose& pose) const {
     const fsw::Vector3 arm = pose.T_C_B.linear() * T_T_B_.inverse().translation();
     Matrix6 move = Matrix6::Identity();
@@ -261,7 +261,7 @@ class BenchFitter {
   Calibration design_, current_;
   ViconCalibration vicon_alone_;
   std::vector<FitImage> images_;
-  std::vector<Matrix6> covariances_;  ///< of the poses by the images
+  std::vector<Matrix6> covariances_;  ///< covariances of the poses by the images
   std::vector<Stage> stages_;
   FitResult whole_;
 };

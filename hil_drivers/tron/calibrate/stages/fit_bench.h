@@ -20,7 +20,7 @@ struct BenchMeasurements {
 
 struct BenchFit {
   Calibration calibration;  ///< with covariances and figures; validity, camera and lights are the caller's
-  std::vector<EvaluatedPose> fused, arms, vicon;  ///< of the judged measurements
+  std::vector<EvaluatedPose> fused, arms, vicon;  ///< figures of the judged measurements
 };
 
 /// `lens`: as designed. Throws std::runtime_error where the measurements do not determine the bench.

@@ -21,7 +21,7 @@ struct DetectionSettings {
   /// light at each of them corrects that. False shows what the library does.
   bool is_refined = true;
   int window_low_px = 2, window_high_px = 8;  ///< half the side of the search, a fifth of a square between these
-  double outlier_px = 3.0;                    ///< of a corner from the plane that the others span
+  double outlier_px = 3.0;                    ///< distance of a corner from the plane that the others span
 };
 
 /// In the order of their numbers; empty if the board is not seen. Throws std::invalid_argument for an image whose

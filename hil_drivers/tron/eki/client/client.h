@@ -14,7 +14,7 @@
 namespace vbar::tron::eki {
 
 struct ClientSettings {
-  std::string name;  ///< of the device in messages: "camera robot"
+  std::string name;  ///< name of the device in messages: "camera robot"
   std::string host;
   std::uint16_t port = 54600;
   std::chrono::milliseconds connect_limit{5000};

@@ -39,7 +39,7 @@ struct State {
   bool emergency_stop = false;
   bool rsi_on = false;
   bool stopped = false;  ///< by a message, which "reset" acknowledges
-  std::string message;   ///< of the controller; empty: none
+  std::string message;   ///< text of the controller; empty: none
   friend bool operator==(const State&, const State&) = default;
 };
 

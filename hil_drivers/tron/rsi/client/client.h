@@ -32,12 +32,12 @@ struct State {
 };
 
 struct ClientSettings {
-  std::string name;           ///< of the device in messages: "camera robot"
+  std::string name;           ///< name of the device in messages: "camera robot"
   std::string robot_address;  ///< datagrams from other addresses are foreign
-  std::uint16_t port = 0;     ///< of this computer; 0: any free one
+  std::uint16_t port = 0;     ///< UDP port of this computer; 0: any free one
   EthernetXml ethernet;
   std::array<CommandLimits, kWireAxes> axes{};
-  std::optional<CommandLimits> track;  ///< of the robot on the track
+  std::optional<CommandLimits> track;  ///< limits of the track that carries the robot
 };
 
 /// Address, port and limits of a robot of the bench (full speed and acceleration of its design, not the override).

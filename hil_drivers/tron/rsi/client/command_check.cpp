@@ -9,7 +9,7 @@
 namespace vbar::tron::rsi {
 namespace {
 
-/// Of rounding, relative to a limit of speed or acceleration; a path planned to the limit is accepted.
+/// Rounding relative to a limit of speed or acceleration; a path planned to the limit is accepted.
 constexpr double kRounding = 1e-6;
 /// Absolute: positions of some radians, differenced twice over 4 ms, carry this much rounding of their own.
 constexpr double kSpeedRounding = 1e-11;

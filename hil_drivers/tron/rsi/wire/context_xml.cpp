@@ -12,9 +12,9 @@ namespace {
 constexpr double kMaxCorrection = 1e5;
 constexpr int kFirstExternalInput = 7;  // AXISCORR and AXISCORREXT share their numbers
 
-class Reader {
+class ContextReader {
  public:
-  explicit Reader(const std::filesystem::path& file) : file_(file, "RSIObjects") {}
+  explicit ContextReader(const std::filesystem::path& file) : file_(file, "RSIObjects") {}
 
   ContextXml read() {
     const pugi::xml_node ethernet = object("ETHERNET");
@@ -108,7 +108,7 @@ void require_same(const std::filesystem::path& file, const std::string& what, in
 }  // namespace
 
 ContextXml read_context_xml(const std::filesystem::path& file) {
-  return Reader(file).read();
+  return ContextReader(file).read();
 }
 
 RobotFiles read_robot_files(const std::filesystem::path& directory, const std::string& name) {

@@ -28,9 +28,9 @@ bool is_name(const std::string& text) {
   });
 }
 
-class Reader {
+class EthernetReader {
  public:
-  explicit Reader(const std::filesystem::path& file) : file_(file, "ROOT") {}
+  explicit EthernetReader(const std::filesystem::path& file) : file_(file, "ROOT") {}
 
   EthernetXml read() {
     read_configuration(file_.child(file_.root(), "CONFIG"));
@@ -120,7 +120,7 @@ class Reader {
 }  // namespace
 
 EthernetXml read_ethernet_xml(const std::filesystem::path& file) {
-  return Reader(file).read();
+  return EthernetReader(file).read();
 }
 
 }  // namespace vbar::tron::rsi

@@ -20,14 +20,14 @@ struct ReceivedValue {
 };
 
 struct EthernetXml {
-  std::string address;  ///< of the computer
+  std::string address;  ///< address of the computer
   std::uint16_t port = 0;
   std::string sen_type;
   /// Internal values that the controller sends, in their order on the wire: "RIst", "AIPos", "EIPos", "Delay".
   std::vector<std::string> sent;
-  std::string axis_element = "AK";  ///< of the corrections A1 to A6
+  std::string axis_element = "AK";  ///< element of the corrections A1 to A6
   std::array<ReceivedValue, kWireAxes> axes{};
-  std::string track_element;  ///< of the correction E1; empty: the robot has no track
+  std::string track_element;  ///< element of the correction E1; empty: the robot has no track
   ReceivedValue track;
   std::string stop_element;  ///< empty: there is no stop
   ReceivedValue stop;

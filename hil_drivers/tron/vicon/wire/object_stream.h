@@ -29,7 +29,7 @@ inline constexpr std::size_t kItemBytes = kItemHeaderBytes + kObjectBytes;
 inline constexpr std::uint8_t kObjectKind = 0;
 inline constexpr std::size_t kMaxItems = 255;
 inline constexpr std::array<std::size_t, 4> kBlockBytes{0, 256, 512, 1024};  ///< 0: as long as its items
-inline constexpr std::size_t kMaxDatagramBytes = 65507;                      ///< of UDP over IPv4
+inline constexpr std::size_t kMaxDatagramBytes = 65507;                      ///< largest payload of UDP over IPv4
 
 struct TrackedObject {
   std::string name;
