@@ -39,7 +39,7 @@ struct TrackerSettings {
   int confirm_images = 7;          ///< ...among N images
   int gap_images = 5;              ///< a gap: number of images without detection
   int hits_after_gap = 3;          ///< detections needed again after a gap
-  int give_up_images = 15;         ///< images without detection, though expected, until given up
+  int give_up_images = 15;         ///< images without detection, though expected, until a track is given up
 };
 
 struct TrackerInput {
@@ -48,7 +48,7 @@ struct TrackerInput {
   std::span<const Candidate> candidates;  ///< at most kMaxCandidates
   std::span<const OwnBurn> burns;         ///< since the last image, in order of time
   std::optional<Prediction> prediction;
-  double detection_probability = 0.9;  ///< that the target, if in the field, is among the candidates: 0 in eclipse
+  double detection_probability = 0.9;  ///< that the target, if in the field, is a candidate: 0 in eclipse
 };
 
 enum class TrackerState : std::uint8_t {
@@ -125,7 +125,7 @@ class TargetTracker {
   bool has_image_ = false;
   GpsTime time_;
   std::uint32_t next_track_ = 1;
-  std::uint32_t target_track_ = 0;  ///< 0: none
+  std::uint32_t target_track_ = 0;  ///< images in which the target was expected, since the tracks were reset
   int images_watched_ = 0;          ///< in which the target was expected, since the last reset of the tracks
   int deposing_images_ = 0;
   bool ambiguous_ = false;
