@@ -1,5 +1,5 @@
 #pragma once
-// The testbeds of this program.
+// Testbeds of this program.
 
 #include <filesystem>
 #include <map>
@@ -13,28 +13,29 @@
 
 namespace vbar::testbeds {
 
-/// Thrown where this program meets a testbed whose driver only `program` has, which is beside it: to be caught where
-/// the command line is parsed, and nowhere before, hence no std::exception.
+/// Thrown where this program needs a testbed whose driver only `program` has, which is beside it. It is caught where
+/// the command line is parsed, and nowhere before; hence it is not a std::exception.
 struct DriverElsewhere {
   std::filesystem::path program;
 };
 
 [[nodiscard]] std::span<const TestbedKind* const> testbed_kinds();
 
-/// Null if there is none of that name, as of the sources "digital" and "recorded".
+/// Returns the kind of this name; null if there is none, as for the sources "digital" and "recorded".
 [[nodiscard]] const TestbedKind* find_testbed(std::string_view name);
 
-/// Throws DriverElsewhere if the driver of this testbed is in another program; no testbed of that name: no effect.
-/// Without the other program a report leaves out what its driver would add.
+/// Throws DriverElsewhere if the driver of this testbed is in another program. Without the other program a report
+/// leaves out what its driver would add. The call has no effect if there is no testbed of that name.
 void require_driver(std::string_view name);
 
-/// As above, of all testbeds: before their tables and keys are listed.
+/// Requires the drivers of all testbeds, before their tables and keys are listed.
 void require_all_drivers();
 
-/// The testbeds that the sensors of one run use, each opened by the first that does.
+/// Testbeds that the sensors of one run use, each opened by the first that does.
 class OpenTestbeds {
  public:
-  /// Throws what the testbed throws, and std::logic_error for one that the mission does not have.
+  /// Returns the run of a kind, opened if it is the first call. Throws what the testbed throws, and std::logic_error
+  /// for one that the mission does not have.
   std::shared_ptr<TestbedRun> run_of(const TestbedKind& kind, const RunContext& context);
 
   [[nodiscard]] const std::vector<std::shared_ptr<TestbedRun>>& runs() const { return runs_; }
