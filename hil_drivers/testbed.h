@@ -50,7 +50,7 @@ struct ReceiverPlan {
 
 /// Camera of one sensor.
 struct CameraPlan {
-  std::string name;                        ///< of the sensor, "servicer/camera": in messages, and of its random numbers
+  std::string name;                        ///< "servicer/camera": in messages, and for random numbers
   twins::camera::CameraSettings settings;  ///< settings as the mission has them
   /// Renders what the camera sees through another projection, onto the region of `settings`, with the models of the
   /// mission. Throws std::runtime_error for data files that cannot be read.
