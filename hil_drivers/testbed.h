@@ -25,33 +25,33 @@
 
 namespace vbar::testbeds {
 
-/// What carries the receiver's data to the flight software of its own spacecraft.
+/// Path of the receiver's data to the flight software of its own spacecraft.
 enum class Wiring {
   kHost,   ///< a serial line of the host, which passes the bytes on
   kBoard,  ///< another port of the receiver to a UART of the board; the line of the host mirrors it
 };
 
-/// How a GNSS receiver of a testbed is connected and configured.
+/// Connection and configuration of a GNSS receiver of a testbed.
 struct ReceiverLine {
-  std::string port;  ///< tty of the receiver's command port; empty: as the testbed says
+  std::string port;  ///< tty of the receiver's command port; empty: as the testbed states
   int baud = 115200;
   Wiring wired = Wiring::kHost;
-  double log_offset_s = 9.0;    ///< of the receiver's epochs after a flight step, modulo their period
+  double log_offset_s = 9.0;    ///< time of the receiver's epochs after a flight step, modulo their period
   bool clock_adjust = true;     ///< the receiver steers its clock to GPS time
-  double max_latency_s = 0.95;  ///< of its first epoch: from the time of the tag to its last byte
+  double max_latency_s = 0.95;  ///< latency of its first epoch: from the time of the tag to its last byte
 };
 
-/// The receiver of one spacecraft.
+/// Receiver of one spacecraft.
 struct ReceiverPlan {
   std::string spacecraft;
   twins::gnss::GnssReceiverSettings settings;
   ReceiverLine line;
 };
 
-/// The camera of one sensor.
+/// Camera of one sensor.
 struct CameraPlan {
-  std::string name;                        ///< of the sensor, "servicer/camera": in messages, and of its random numbers
-  twins::camera::CameraSettings settings;  ///< as the mission has it
+  std::string name;                        ///< "servicer/camera": in messages, and for random numbers
+  twins::camera::CameraSettings settings;  ///< settings as the mission has them
   /// Renders what the camera sees through another projection, onto the region of `settings`, with the models of the
   /// mission. Throws std::runtime_error for data files that cannot be read.
   std::function<std::unique_ptr<twins::camera::SceneRenderer>(
@@ -59,44 +59,45 @@ struct CameraPlan {
       make_scene;
 };
 
-/// A source of packets as a whole: a sensor, or of a pair of receivers one.
+/// Source of packets as a whole: a sensor, or one source for a pair of receivers.
 struct PacketPlan {
-  std::string name;                         ///< of the source, "servicer/gnss": in messages
-  std::vector<fsw::packets::Apid> allowed;  ///< the messages that it may send
-  std::uint8_t spacecraft = 0;              ///< in the headers of its packets
-  std::uint8_t unit = 0;                    ///< likewise
+  std::string name;                         ///< name of the source, "servicer/gnss": in messages
+  std::vector<fsw::packets::Apid> allowed;  ///< messages that it may send
+  std::uint8_t spacecraft = 0;              ///< number in the headers of its packets
+  std::uint8_t unit = 0;                    ///< number in the headers of its packets
   bool truth_is_compared = false;           ///< as PacketSource::truth_is_compared
-  std::size_t packets_max = 65535;          ///< in one epoch; those beyond are rejected
-  /// Why a packet of an allowed message cannot be a measurement of this sensor, whose packet is then rejected; empty if
-  /// it can. May be null.
+  std::size_t packets_max = 65535;          ///< packets in one epoch; those beyond are rejected
+  /// Returns the reason why a packet of an allowed message cannot be a measurement of this sensor, whose packet is then
+  /// rejected; empty if it can. May be null.
   std::function<std::string(const fsw::packets::PacketView&)> fault_of_value = {};
 };
 
-/// The true motion of all spacecraft of a mission.
+/// True motion of all spacecraft of a mission.
 struct TruthPlan {
   const mission::Mission& mission;
-  const mission::Spacecraft& servicer;  ///< that flies; mission and servicer outlive the truth
+  const mission::Spacecraft& servicer;  ///< the spacecraft that flies; mission and servicer outlive the truth
   std::filesystem::path data_directory;
-  twins::TruthSnapshot start;  ///< where the spacecraft are at the start of the run, by vbar's truth model
-  std::shared_ptr<const truth::EarthOrientationSeries> earth_orientation;  ///< of the mission
+  twins::TruthSnapshot start;  ///< states at the start of the run, by vbar's truth model
+  std::shared_ptr<const truth::EarthOrientationSeries> earth_orientation;  ///< series of the mission
 };
 
-/// The world of a run whose motion is the testbed's. All functions but stop() throw std::runtime_error, one sentence
-/// that names the truth.
+/// World of a run whose motion is the testbed's. All functions but stop() throw std::runtime_error, one sentence that
+/// names the truth.
 class TestbedTruth : public twins::TrueWorld, public twins::TruthOutlook {
  public:
-  /// Before the run folder exists, and before the sources of the run. A second call has no effect.
+  /// Starts the truth, before the run folder exists, and before the sources of the run. A second call has no effect.
   virtual void start() = 0;
-  /// However the run ended, also after a start() that threw; a second call has no effect. The destructor does the same.
+  /// Stops the truth however the run ended, also after a start() that threw; a second call has no effect. The
+  /// destructor does the same.
   virtual void stop() noexcept = 0;
   /// Number of times that the testbed was asked for states.
   [[nodiscard]] virtual std::int64_t exchanges() const = 0;
 };
 
-/// What the flight software is configured with for a camera of the testbed.
+/// Configuration of the flight software for a camera of the testbed.
 struct CalibratedCamera {
   twins::camera::CameraSettings settings;
-  std::optional<double> centroid_floor_px;  ///< what calibration leaves of the error of a centroid, each axis
+  std::optional<double> centroid_floor_px;  ///< error of a centroid that calibration leaves, each axis
 };
 
 struct RunContext {
@@ -105,9 +106,9 @@ struct RunContext {
   twins::TruthOutlook& outlook;
 };
 
-/// A testbed during one run, shared by all sensors that it provides. In order: the sensors are made, their sources are
-/// started and prepare the testbed, begin(), the run, the sources are stopped, finish(). The last two follow any end of
-/// a run that had begun.
+/// Testbed during one run, shared by all sensors that it provides. Order of calls: the sensors are made, their sources
+/// are started and prepare the testbed, begin(), the run, the sources are stopped, finish(). The last two follow any
+/// end of a run that had begun.
 class TestbedRun {
  public:
   TestbedRun() = default;
@@ -115,33 +116,33 @@ class TestbedRun {
   TestbedRun& operator=(const TestbedRun&) = delete;
   virtual ~TestbedRun() = default;
 
-  /// Null: it has no GNSS receivers. Throws std::runtime_error if the plan cannot be met. The receiver keeps this run
-  /// alive.
+  /// Makes a receiver; null: the testbed has no GNSS receivers. Throws std::runtime_error if the plan cannot be met.
+  /// The receiver keeps this run alive.
   [[nodiscard]] virtual std::unique_ptr<twins::gnss::ReceiverBytes> make_receiver(const ReceiverPlan& plan) {
     static_cast<void>(plan);
     return nullptr;
   }
 
-  /// Null: it has no camera. As above.
+  /// Makes a camera; null: the testbed has none. Errors and lifetime are those of make_receiver.
   [[nodiscard]] virtual std::unique_ptr<twins::camera::ImageTaker> make_camera(const CameraPlan& plan) {
     static_cast<void>(plan);
     return nullptr;
   }
 
-  /// Null: it has no source of packets of its own. As above.
+  /// Makes a source of packets; null: the testbed has none of its own. Errors and lifetime are those of make_receiver.
   [[nodiscard]] virtual std::unique_ptr<twins::PacketSource> make_packets(const PacketPlan& plan) {
     static_cast<void>(plan);
     return nullptr;
   }
 
-  /// The run is recorded in `record` and, unless the path is empty, in `folder`, from now on; the testbed's time
-  /// starts. Throws std::runtime_error, one sentence. `record` outlives the run.
+  /// Begins the record of the run in `record` and, unless the path is empty, in `folder`; the testbed's time starts.
+  /// Throws std::runtime_error, one sentence. `record` outlives the run.
   virtual void begin(report::RunRecord& record, const std::filesystem::path& folder) = 0;
 
-  /// The clock that the run follows, after begin(); null: the mission's.
+  /// Returns the clock that the run follows, after begin(); null: the mission's.
   [[nodiscard]] virtual engine::WallClock* clock() { return nullptr; }
 
-  /// Adds to the record what is known at the end. Does not throw.
+  /// Adds the figures at the end of the run to the record. Does not throw.
   virtual void finish() noexcept = 0;
 };
 
@@ -149,12 +150,12 @@ struct TestbedKind : mission::TestbedReader {
   std::shared_ptr<TestbedRun> (*open)(const mission::TestbedSettings& settings, const RunContext& context);
   /// Tables, figures of the summary and report section.
   report::Extension report{};
-  /// The camera of the mission as the testbed has calibrated it. Null: as the mission has it. Throws MissionError for a
-  /// calibration that cannot be read.
+  /// Returns the camera of the mission as the testbed has calibrated it. Null: as the mission has it. Throws
+  /// MissionError for a calibration that cannot be read.
   CalibratedCamera (*calibrated_camera)(const mission::TestbedSettings& settings, const mission::Mission& mission,
                                         const std::filesystem::path& data_directory,
                                         const twins::camera::CameraSettings& of_mission) = nullptr;
-  /// The truth of a run, if the kind supplies it. Throws std::runtime_error if the plan cannot be met.
+  /// Makes the truth of a run, if the kind supplies it. Throws std::runtime_error if the plan cannot be met.
   std::unique_ptr<TestbedTruth> (*make_truth)(const mission::TestbedSettings& settings,
                                               const TruthPlan& plan) = nullptr;
 };

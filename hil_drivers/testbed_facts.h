@@ -1,5 +1,5 @@
 #pragma once
-// The figures of a testbed as its section of the report shows them.
+// Figures of a testbed as its section of the report shows them.
 
 #include <algorithm>
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace vbar::testbeds {
 
-/// Empty: there is none of that name.
+/// Returns the text of a figure; empty: there is none of that name.
 [[nodiscard]] inline std::string text_of(const report::TestbedFigures& figures, const std::string& name) {
   const auto found = figures.find(name);
   if (found == figures.end()) return "";
@@ -20,7 +20,7 @@ namespace vbar::testbeds {
   return text != nullptr ? *text : report::significant(std::get<double>(found->second), 6);
 }
 
-/// All of them, their names as words.
+/// Returns all figures, their names as words.
 [[nodiscard]] inline std::vector<report::Fact> facts_of(const report::TestbedFigures& figures) {
   std::vector<report::Fact> facts;
   for (const auto& [name, value] : figures) {

@@ -9,7 +9,7 @@
 namespace vbar::fsw::angles_only {
 namespace {
 
-// Of a factor e of flux.
+// Magnitudes of a factor e of flux.
 constexpr double kMagnitude = 1.0857362047581296;
 
 constexpr double kMinFlux_dn = 1.0;

@@ -23,21 +23,21 @@ struct CameraSettings {
   imaging::ImageFrame frame;
   imaging::CameraModel model;
   imaging::DetectorSettings detector;
-  double zero_magnitude_dn = 0.0;  ///< of a star of magnitude 0
+  double zero_magnitude_dn = 0.0;  ///< flux of a star of magnitude 0, all its pixels
   Matrix3 R_camera_body = Matrix3::Identity();
   Vector3 position_body_m = Vector3::Zero();
   double centroid_floor_px = 0.05;
-  double pointing_tolerance = 3e-3;  ///< rad, of the commanded pointing
+  double pointing_tolerance = 3e-3;  ///< largest error of the commanded pointing, rad
 };
 
 /// A-priori information at the time of exposure.
 struct ImagePriors {
   bool is_orbit_known = false;
   orbit::CartesianState servicer;
-  Vector3 velocity_over_c_eci = Vector3::Zero();  ///< of the camera, barycentric, for aberration
-  std::optional<Matrix3> R_camera_eci;            ///< as commanded
-  std::optional<tracking::Prediction> target;     ///< predicted by navigation, as seen by the camera
-  double detection_probability = 0.95;            ///< of the target: smaller if it may be in eclipse
+  Vector3 velocity_over_c_eci = Vector3::Zero();  ///< velocity of the camera, barycentric, for aberration
+  std::optional<Matrix3> R_camera_eci;            ///< attitude as commanded
+  std::optional<tracking::Prediction> target;     ///< motion predicted by navigation, as seen by the camera
+  double detection_probability = 0.95;            ///< that of the target: smaller if it may be in eclipse
   std::span<const tracking::OwnBurn> burns;       ///< since the last image, in order of time
 };
 
@@ -53,7 +53,7 @@ class AnglesOnlyTracking {
  public:
   void configure(const CameraSettings& settings);
 
-  /// Images must be passed in order of time.
+  /// Processes an image. Images must be passed in order of time.
   const Sighting& process(const TakenImage& image, const ImagePriors& priors);
 
   [[nodiscard]] const Sighting& sighting() const { return sighting_; }
@@ -75,7 +75,7 @@ class AnglesOnlyTracking {
   stars::StarIdentifier identifier_;
   tracking::TargetTracker tracker_;
   stars::Field field_;
-  std::size_t count_ = 0;                                               ///< of the objects that have a direction
+  std::size_t count_ = 0;                                               ///< number of objects that have a direction
   std::array<stars::ObservedStar, imaging::kMaxObjects> seen_{};        ///< the objects, not yet classified
   std::array<tracking::Candidate, imaging::kMaxObjects> candidates_{};  ///< those that are not stars
   std::array<std::size_t, imaging::kMaxObjects> object_of_candidate_{};

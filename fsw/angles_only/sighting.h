@@ -11,12 +11,12 @@
 
 namespace vbar::fsw::angles_only {
 
-/// Why an image yielded no bearing; numbers of telemetry_image.status.
+/// Reason why an image yielded no bearing; numbers of telemetry_image.status.
 enum class SightingStatus : std::int8_t {
   kBearing = 0,       ///< a bearing was obtained
   kWrongFrame = 1,    ///< size, origin or depth of the image differ from the configured camera
   kBlank = 2,         ///< no light, or saturated
-  kTooLittle = 3,     ///< most of it never arrived
+  kTooLittle = 3,     ///< most of the image never arrived
   kNoStars = 4,       ///< the stars in it could not be identified: no attitude
   kNoTarget = 5,      ///< the track of the target has no certain object in it
   kNotConfirmed = 6,  ///< a target candidate, not yet confirmed
@@ -39,13 +39,13 @@ struct Sighting {
   double noise_dn = 0.0;  ///< 1 sigma of a pixel
   int objects = 0;
   std::array<ObjectKind, imaging::kMaxObjects> kind{};
-  std::array<std::int32_t, imaging::kMaxObjects> hipparcos{};  ///< of identified stars
-  int stars = 0;                                               ///< identified
+  std::array<std::int32_t, imaging::kMaxObjects> hipparcos{};  ///< Hipparcos numbers of identified stars
+  int stars = 0;                                               ///< number of identified stars
   StarMethod star_method = StarMethod::kNone;
-  Matrix3 R_camera_eci = Matrix3::Identity();  ///< by the stars, if there is a method
-  double attitude_sigma = 0.0;                 ///< rad, of the boresight's direction
+  Matrix3 R_camera_eci = Matrix3::Identity();  ///< attitude by the stars, if the method is not kNone
+  double attitude_sigma = 0.0;                 ///< 1 sigma of the boresight's direction, rad
   int hypotheses = 0;
-  int target = -1;                         ///< index of the object
+  int target = -1;                         ///< index of the target's object
   navigation::BearingMeasurement bearing;  ///< only with kBearing
 };
 

@@ -1,9 +1,10 @@
 #pragma once
-// CRC-32 with the polynomial 0x04C11DB7 in its reflected form, of frames, files and messages of GNSS receivers. They
-// differ in what the register begins with, and in whether the result is inverted.
+// CRC-32 of frames, files and messages of GNSS receivers: polynomial 0x04C11DB7 in its reflected form. These formats
+// differ in the initial value of the register, and in whether the result is inverted.
 //
-// Eight bytes at a time, by eight tables (M. E. Kounavis, F. L. Berry, IEEE Trans. Computers 57, 2008): the remainders
-// of the bytes are independent look-ups, where one byte at a time waits for the one before it. 8 KiB.
+// Eight bytes are processed at a time, by eight tables, 8 KiB in all (M. E. Kounavis, F. L. Berry, IEEE Trans.
+// Computers 57, 2008): the remainders of the bytes are independent look-ups, whereas one byte at a time waits for the
+// one before it.
 
 #include <array>
 #include <cstddef>
@@ -14,7 +15,7 @@ namespace vbar::fsw {
 
 inline constexpr std::size_t kCrc32Slices = 8;
 
-/// Entry [n][b]: the register after byte b and n bytes of zero, from a register of zero.
+/// Entry [n][b] is the register after byte b and n bytes of zero, from a register of zero.
 inline constexpr auto kCrc32Tables = [] {
   constexpr std::uint32_t kReflectedPolynomial = 0xEDB88320U;
   std::array<std::array<std::uint32_t, 256>, kCrc32Slices> tables{};
@@ -31,12 +32,12 @@ inline constexpr auto kCrc32Tables = [] {
   return tables;
 }();
 
-/// The register after one more byte.
+/// Returns the register after one more byte.
 constexpr std::uint32_t crc32_after(std::uint32_t crc, std::uint8_t byte) {
   return (crc >> 8U) ^ kCrc32Tables[0][(crc ^ byte) & 0xFFU];
 }
 
-/// The register after more bytes.
+/// Returns the register after more bytes.
 constexpr std::uint32_t crc32_after(std::uint32_t crc, std::span<const std::uint8_t> bytes) {
   const auto& t = kCrc32Tables;
   while (bytes.size() >= kCrc32Slices) {

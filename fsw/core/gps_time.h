@@ -34,17 +34,17 @@ constexpr Duration operator+(Duration a, Duration b) {
   return {a.ns + b.ns};
 }
 
-/// Seconds of a span: exact to a nanosecond for spans under 104 days (2^53 ns).
+/// Returns the seconds of a span: exact to a nanosecond for spans under 104 days (2^53 ns).
 constexpr double seconds(Duration d) {
   return static_cast<double>(d.ns) / 1e9;
 }
 
-/// Whole-second span.
+/// Returns the span of a whole number of seconds.
 constexpr Duration duration_of_seconds(std::int64_t s) {
   return {s * kNanosecondsPerSecond};
 }
 
-/// Span nearest to `s` seconds; `s` must be finite and below 9e9 in magnitude.
+/// Returns the span nearest to `s` seconds; `s` must be finite and below 9e9 in magnitude.
 constexpr Duration nearest_duration(double s) {
   const double ns = s * 1e9;
   return {static_cast<std::int64_t>(ns < 0.0 ? ns - 0.5 : ns + 0.5)};

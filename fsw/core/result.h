@@ -5,7 +5,7 @@
 
 namespace vbar::fsw {
 
-/// Why an operation was refused or failed. One list for all flight code, so that telemetry can carry it.
+/// Reason why an operation was rejected or failed. One list serves all flight code, so that telemetry can carry it.
 enum class Status : std::uint8_t {
   kOk = 0,
   kInvalidArgument,  ///< a precondition of the call does not hold

@@ -22,7 +22,7 @@ struct FilingTag {
 // Without padding, which a copy may take from the stack into a snapshot.
 static_assert(std::has_unique_object_representations_v<FilingTag>);
 
-/// Up to `kCapacity` entries in order of their tags. Rule when full: the newest arrival is refused, nothing is
+/// Holds up to `kCapacity` entries in order of their tags. If it is full the newest arrival is rejected; nothing is
 /// overwritten.
 template <class T, std::size_t kCapacity>
 class TimeOrderedQueue {

@@ -1,12 +1,12 @@
 #pragma once
-// Which float ambiguities may be held to which integers. Integers are accepted if
+// Selection of the float ambiguities that may be held to integers. Integers are accepted if
 //   the model is strong:  bootstrapping succeeds with the required probability (Teunissen 1998);
 //   they are distinct:    the second-best are farther by the ratio that keeps wrong fixes below kFixFailureRate
-//                         (ratio_threshold.h), and by a fixed ratio that guards against covariances that are too small;
+//                         (ratio_threshold.h), and by a fixed ratio against covariances that are too small;
 //   they fit:             their squared distance from the float solution is plausible for a chi-square variable.
-// If not all can be accepted, the worst one is left out and the others tried again, down to a smallest useful set.
-// More than kMaxAmbiguities are reduced first to the most precise given each other; once these are held, the
-// covariance of the others in the filter shrinks and a further call resolves them.
+// If not all can be accepted, the worst one is left out and the others are tried again, down to a smallest useful set.
+// More than kMaxAmbiguities are reduced first to the most precise given each other; once these are held, the covariance
+// of the others in the filter shrinks and a further call resolves them.
 
 #include <array>
 #include <cstddef>
@@ -19,13 +19,13 @@
 
 namespace vbar::fsw::gnss {
 
-/// Double differences that a filter may carry; above what 80 observations have.
+/// Largest number of double differences that a filter may carry; 80 observations have fewer.
 inline constexpr std::size_t kMaxFloatAmbiguities = 80;
 
 struct ValidationCriteria {
-  double min_success_rate = 0.9;       ///< of bootstrapping; 1 - kLargestModelFailureRate at least
-  double min_ratio = 2.0;              ///< of squared norms, second-best to best, whatever the model's strength
-  double residual_false_alarm = 1e-4;  ///< probability that correct integers are refused for their residual
+  double min_success_rate = 0.9;       ///< smallest success rate by bootstrapping; 1 - kLargestModelFailureRate or more
+  double min_ratio = 2.0;              ///< smallest ratio of squared norms, second-best to best, for any model
+  double residual_false_alarm = 1e-4;  ///< probability that correct integers are rejected for their residual
   std::size_t min_count = 4;           ///< fewer double differences do not fix a baseline
 };
 
@@ -33,23 +33,23 @@ struct ValidationCriteria {
 enum class RejectionReason : std::uint8_t {
   kNone = 0,
   kTooFew,    ///< fewer ambiguities than min_count
-  kWeak,      ///< success rate
-  kNotApart,  ///< ratio
-  kNoFit,     ///< residual
+  kWeak,      ///< success rate too small
+  kNotApart,  ///< ratio too small
+  kNoFit,     ///< residual too large
   kSearch,    ///< the search reached its bound, or the covariance is not positive definite
 };
 
 struct AmbiguityDecision {
-  std::size_t count = 0;  ///< to be held; 0: none, the float solution remains
-  /// Which, as indices in the caller's vector, increasing, and their integers.
+  std::size_t count = 0;  ///< number to be held; 0: none, the float solution remains
+  /// Ambiguities to be held, as indices in the caller's vector, increasing, and their integers.
   std::array<std::uint8_t, kMaxAmbiguities> position{};
   std::array<double, kMaxAmbiguities> whole{};
   RejectionReason rejection_reason = RejectionReason::kNone;  ///< the first one met while reducing the set
-  // Of those held, or of the last set considered.
+  // Criteria of the set that is held, or of the last set considered.
   double success_rate = 0.0;
   double ratio = 0.0;     ///< at most 1e9
   double residual = 0.0;  ///< squared norm of the integers, chi-square with the size of the set if they are correct
-  std::size_t tried = 0;  ///< sets
+  std::size_t tried = 0;  ///< number of sets tried
 };
 
 /// Memory of a decision, too large for a small stack; holds no state between calls.
@@ -61,8 +61,8 @@ struct ValidationWorkspace {
   std::array<double, kMaxAmbiguities * kMaxFloatAmbiguities> factor{};
 };
 
-/// `ambiguities`: n floats, cycles, n <= kMaxFloatAmbiguities; `covariance`: n x n, cycles^2, column-major, lower
-/// triangle read. kInvalidArgument for sizes or criteria that make no sense, kNotFinite.
+/// Decides on `ambiguities`, n floats, cycles, n <= kMaxFloatAmbiguities, with `covariance`, n x n, cycles^2,
+/// column-major, lower triangle read. kInvalidArgument for sizes or criteria that make no sense, kNotFinite.
 Result<AmbiguityDecision> decide_ambiguities(std::span<const double> ambiguities, std::span<const double> covariance,
                                              const ValidationCriteria& criteria, ValidationWorkspace& workspace);
 

@@ -11,8 +11,8 @@ inline constexpr double kL2_Hz = 1227.60e6;
 inline constexpr double kE1_Hz = 1575.42e6;
 inline constexpr double kB1I_Hz = 1561.098e6;
 
-// Of the broadcast orbit models, each its own system's: IS-GPS-200N table 20-IV; Galileo OS SIS ICD 2.1, table 67;
-// BDS-SIS-ICD-B1I-3.0, 5.2.4.12. m^3/s^2, rad/s, s/m^(1/2).
+// Gravitational parameter, Earth rate and relativistic constant of each system's broadcast orbit model: IS-GPS-200N
+// table 20-IV; Galileo OS SIS ICD 2.1, table 67; BDS-SIS-ICD-B1I-3.0, 5.2.4.12. m^3/s^2, rad/s, s/m^(1/2).
 inline constexpr double kGmGps = 3.986005e14;
 inline constexpr double kGmGalileo = 3.986004418e14;
 inline constexpr double kGmBeidou = 3.986004418e14;

@@ -15,7 +15,8 @@
 
 namespace vbar::fsw::gnss {
 
-/// The nearest integer, halves to the even one, for |x| < 2^51: adding 1.5 * 2^52 leaves no bits for a fraction.
+/// Returns the nearest integer, halves to the even one, for |x| < 2^51: adding 1.5 * 2^52 leaves no bits for a
+/// fraction.
 inline double nearest_integer(double x) {
   constexpr double kNoFraction = 6755399441055744.0;
   return (x + kNoFraction) - kNoFraction;
@@ -31,15 +32,15 @@ class LowerTriangle {
   std::array<double, kMaxAmbiguities*(kMaxAmbiguities + 1) / 2> elements_{};
 };
 
-/// A float ambiguity problem and its decorrelated form. Component k of the latter has variance d[k] when those after it
-/// are known.
+/// Float ambiguity problem and its decorrelated form. Component k of the decorrelated form has variance d[k] when the
+/// components after it are known.
 class Decorrelation {
  public:
   /// Factors and reduces. `ambiguities` in cycles, `covariance` in cycles^2, n x n, of which the lower triangle of the
   /// column-major matrix is read. kInvalidArgument for sizes that do not fit; kNotFinite; kOutOfRange for |a| >= 2^51;
-  /// kSingular if a conditional variance is below 1e-12 of its variance (dominated by rounding) or
-  /// the correlations need transformations beyond integers of 31 bits; kDidNotConverge at the bound of the
-  /// reduction. After an error the object must not be used.
+  /// kSingular if a conditional variance is below 1e-12 of its variance (dominated by rounding) or the correlations
+  /// need transformations beyond integers of 31 bits; kDidNotConverge at the bound of the reduction. After an error the
+  /// object must not be used.
   [[nodiscard]] Status compute(std::span<const double> ambiguities, std::span<const double> covariance);
 
   [[nodiscard]] std::size_t count() const { return count_; }
@@ -47,10 +48,10 @@ class Decorrelation {
   [[nodiscard]] std::span<const double> d() const { return std::span(d_).first(count_); }
   /// Decorrelated float ambiguities, less integers.
   [[nodiscard]] std::span<const double> z() const { return std::span(z_).first(count_); }
-  /// The unit factor; its diagonal is 1.
+  /// Unit factor L; its diagonal is 1.
   [[nodiscard]] const LowerTriangle& l() const { return l_; }
 
-  /// Integer decorrelated ambiguities, in place, to those of the caller. kOutOfRange beyond 2^52.
+  /// Transforms integer decorrelated ambiguities, in place, to those of the caller. kOutOfRange beyond 2^52.
   [[nodiscard]] Status to_original(std::span<double> z) const;
 
  private:
@@ -72,7 +73,7 @@ class Decorrelation {
   /// Z^-T, integers: the caller's ambiguities are the sum of z[k] times column column_[k], whole_ added.
   std::array<double, kMaxAmbiguities * kMaxAmbiguities> back_{};
   std::array<std::uint8_t, kMaxAmbiguities> column_{};
-  double largest_back_ = 0.0;  ///< of its elements
+  double largest_back_ = 0.0;  ///< largest element of back_
 };
 
 }  // namespace vbar::fsw::gnss

@@ -1,5 +1,6 @@
 #pragma once
-// Broadcast ephemerides of GPS, Galileo and BeiDou in one form, and the satellite state computed from them.
+// Broadcast ephemerides of GPS, Galileo and BeiDou in one form, and the satellite state computed from them: Keplerian
+// elements with secular rates and harmonic corrections, clock polynomial with relativity.
 // IS-GPS-200N 20.3.3.4.3 (orbit) and 20.3.3.3.3.1 (clock); Galileo OS SIS ICD 2.1, 5.1.1 and 5.1.4;
 // BDS-SIS-ICD-B1I-3.0, 5.2.4.9 to 5.2.4.12 (inclined and medium orbits; the geostationary satellites' rotated frame
 // included).
@@ -16,7 +17,7 @@ struct Ephemeris {
   std::int32_t issue = 0;  ///< IODE, IODnav, AODE: identifies the set
   bool healthy = false;
   GpsTime toe;          ///< reference time of the orbit, in GPS time for every system
-  GpsTime toc;          ///< the same of the clock
+  GpsTime toc;          ///< reference time of the clock, in GPS time for every system
   double sqrt_a = 0.0;  ///< m^(1/2)
   double e = 0.0;
   double m0 = 0.0;         ///< rad, as all angles
@@ -40,12 +41,12 @@ struct SatelliteState {
   double clock_drift = 0.0;  ///< s/s
 };
 
-/// Whether its elements are valid for a navigation satellite: finite, inside the ranges that the interface documents
-/// allow.
+/// Returns kOk if the elements are valid for a navigation satellite: finite, inside the ranges that the interface
+/// documents allow.
 Status check(const Ephemeris& ephemeris);
 
-/// State at `time` (GPS time of transmission). kOutOfRange if `time` is more than four hours from toe or the elements
-/// fail check().
+/// Returns the state at `time` (GPS time of transmission). kOutOfRange if `time` is more than four hours from toe or
+/// the elements fail check().
 Result<SatelliteState> satellite_state(const Ephemeris& ephemeris, GpsTime time);
 
 }  // namespace vbar::fsw::gnss

@@ -12,7 +12,7 @@ struct Level {
   double centre = 0.0;     ///< float value given the integers of the later components
   double whole = 0.0;      ///< current integer
   double step = 0.0;       ///< to the next candidate: 1, -2, 3, ... or -1, 2, -3, ...
-  double distance2 = 0.0;  ///< of the later components
+  double distance2 = 0.0;  ///< squared distance of the later components
   double weight = 0.0;     ///< 1 / conditional variance
 };
 

@@ -10,8 +10,8 @@
 
 namespace vbar::fsw::gnss {
 
-/// Node limit of a search. A problem whose success rate is 0.5 takes some hundred at 24 ambiguities; one with this
-/// many cannot be resolved reliably. A node costs about 100 cycles of a Cortex-A9.
+/// Largest number of nodes of a search. A problem whose success rate is 0.5 takes some hundred at 24 ambiguities; one
+/// with this many cannot be resolved reliably. A node costs about 100 cycles of a Cortex-A9.
 inline constexpr std::size_t kMaxSearchNodes = 1U << 18U;
 
 /// Larger than any squared distance in a search.
@@ -31,10 +31,11 @@ struct NearestIntegers {
   double second_norm2 = 0.0;
 };
 
-/// kDidNotConverge at the node limit: `nearest` then holds the nearest found so far.
+/// Searches the two nearest integer vectors. kDidNotConverge at the node limit: `nearest` then holds the nearest found
+/// so far.
 Status search_integers(const Decorrelation& problem, const SearchLimits& limits, NearestIntegers& nearest);
 
-/// resolve_ambiguities() of a problem that is decorrelated already.
+/// Solves as resolve_ambiguities() does, for a problem that is decorrelated already.
 Result<IntegerSolution> resolve_decorrelated(const Decorrelation& problem);
 
 }  // namespace vbar::fsw::gnss

@@ -36,8 +36,8 @@ constexpr double wavelength(Signal signal) {
 struct Observation {
   SatelliteId satellite;
   Signal signal = Signal::kGpsL1;
-  /// The code by which it is tracked, as numbered by the receiver (GPS L2: 9 P(Y), 5 P, 17 C). Phases of
-  /// different codes differ by fractions of a cycle: an arc, and a difference between receivers, is of one code.
+  /// Code by which the signal is tracked, as numbered by the receiver (GPS L2: 9 P(Y), 5 P, 17 C). Phases of different
+  /// codes differ by fractions of a cycle: an arc, and a difference between receivers, is of one code.
   std::uint8_t code = 0;
   bool phase_usable = false;  ///< phase lock, and no half-cycle ambiguity (parity known)
   double pseudorange_m = 0.0;
@@ -46,10 +46,10 @@ struct Observation {
   double pseudorange_sigma_m = 0.0;   ///< the receiver's own estimates
   double phase_sigma_cycles = 0.0;
   double cn0_dbhz = 0.0;
-  double lock_time_s = 0.0;  ///< of continuous carrier tracking: decreases after a slip
+  double lock_time_s = 0.0;  ///< duration of continuous carrier tracking: decreases after a slip
 };
 
-/// 24 satellites of two GPS signals, 16 each of Galileo and BeiDou.
+/// Largest number of observations: 24 satellites of two GPS signals, 16 each of Galileo and BeiDou.
 inline constexpr std::size_t kMaxObservations = 80;
 
 struct ObservationEpoch {

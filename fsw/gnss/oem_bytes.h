@@ -22,17 +22,17 @@ template <std::unsigned_integral Integer>
   return read_little_endian<std::uint32_t>(bytes, offset);
 }
 
-/// Four bytes of single precision. Any value, NaN and infinity included.
+/// Reads four bytes of single precision. Any value is possible, NaN and infinity included.
 [[nodiscard]] constexpr double read_f32(std::span<const std::uint8_t> bytes, std::size_t offset) {
   return static_cast<double>(std::bit_cast<float>(read_little_endian<std::uint32_t>(bytes, offset)));
 }
 
-/// Eight bytes of double precision. Any value, NaN and infinity included.
+/// Reads eight bytes of double precision. Any value is possible, NaN and infinity included.
 [[nodiscard]] constexpr double read_f64(std::span<const std::uint8_t> bytes, std::size_t offset) {
   return std::bit_cast<double>(read_little_endian<std::uint64_t>(bytes, offset));
 }
 
-/// The number whose lowest `count` bits (1 to 32) are two's complement.
+/// Returns the number whose lowest `count` bits (1 to 32) are two's complement.
 [[nodiscard]] constexpr std::int32_t sign_extended(std::uint32_t value, unsigned count) {
   const std::uint32_t sign = 1U << (count - 1);
   const std::uint32_t magnitude = value & (sign - 1);
@@ -40,7 +40,7 @@ template <std::unsigned_integral Integer>
                              : static_cast<std::int32_t>(static_cast<std::int64_t>(magnitude) - sign);
 }
 
-/// `count` bits (at most 64) of a string whose bit 0 is the lowest of its first byte, as in RANGECMP.
+/// Reads `count` bits (at most 64) of a string whose bit 0 is the lowest of its first byte, as in RANGECMP.
 [[nodiscard]] constexpr std::uint64_t read_low_first_bits(std::span<const std::uint8_t> bytes, std::size_t first,
                                                           unsigned count) {
   std::uint64_t value = 0;
@@ -51,7 +51,8 @@ template <std::unsigned_integral Integer>
   return value;
 }
 
-/// `count` bits (at most 32) of a string whose bit 0 is the highest of its first byte, as navigation data are sent.
+/// Reads `count` bits (at most 32) of a string whose bit 0 is the highest of its first byte, as navigation data are
+/// sent.
 [[nodiscard]] constexpr std::uint32_t read_high_first_bits(std::span<const std::uint8_t> bytes, std::size_t first,
                                                            unsigned count) {
   std::uint32_t value = 0;

@@ -15,7 +15,7 @@ struct ObservationTally {
   std::uint32_t not_used = 0;       ///< signals and systems not used on board, or unknown satellite
   std::uint32_t not_locked = 0;     ///< no code lock: no pseudorange
   std::uint32_t implausible = 0;    ///< NaN, or outside the range of a satellite signal
-  std::uint32_t phase_refused = 0;  ///< kept for its code; its phase is NaN or out of range
+  std::uint32_t phase_refused = 0;  ///< phases that are NaN or out of range; the observation is kept for its code
   std::uint32_t duplicate = 0;      ///< the same satellite and signal again, or by a code of lower rank
   std::uint32_t no_room = 0;        ///< more than kMaxObservations
 };
@@ -25,7 +25,7 @@ struct ObservationTally {
 /// are left out, one by one.
 Status read_range(const OemMessage& message, ObservationEpoch& epoch, ObservationTally& tally);
 
-/// Likewise for RANGECMP (id 140), whose carrier phase rolls over and is corrected by the pseudorange.
+/// Reads RANGECMP (id 140) in the same way; its carrier phase rolls over and is corrected by the pseudorange.
 Status read_range_compressed(const OemMessage& message, ObservationEpoch& epoch, ObservationTally& tally);
 
 }  // namespace vbar::fsw::gnss

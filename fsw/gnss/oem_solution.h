@@ -2,8 +2,9 @@
 // Solutions of a NovAtel receiver and data common to all satellites: the ionospheric model, its clock
 // offset, its own position (OEM7 Commands and Logs Reference Manual, logs of these names).
 //
-// All: kWrongType for another id; kTooShort for a body shorter than the log; kNotReady if the receiver reports
-// no solution; kNotFinite, kOutOfRange for invalid values; those with a time, the results of time_of().
+// Errors of all functions: kWrongType for another id; kTooShort for a body shorter than the log; kNotReady if the
+// receiver reports no solution; kNotFinite, kOutOfRange for invalid values; for logs with a time, the results of
+// time_of().
 
 #include "fsw/core/result.h"
 #include "fsw/core/types.h"
@@ -17,10 +18,10 @@ inline constexpr std::uint16_t kOemBestPosition = 42;
 inline constexpr std::uint16_t kOemTime = 101;
 inline constexpr std::uint16_t kOemBestXyz = 241;
 
-/// The receiver's clock against GPS time.
+/// Offset of the receiver's clock from GPS time.
 struct ReceiverClock {
   GpsTime receiver_time;
-  double offset_s = 0.0;  ///< GPS time is the receiver's time minus this
+  double offset_s = 0.0;  ///< GPS time is the receiver's time minus this offset
   double sigma_s = 0.0;
 };
 
@@ -36,17 +37,17 @@ struct ReceiverPosition {
   std::uint8_t satellites_used = 0;
 };
 
-/// IONUTC (id 8): the ionospheric model.
+/// Reads IONUTC (id 8): the ionospheric model.
 Result<KlobucharCoefficients> read_ionosphere(const OemMessage& message);
 
-/// TIME (id 101). kNotReady unless the clock model is valid.
+/// Reads TIME (id 101). kNotReady unless the clock model is valid.
 Result<ReceiverClock> read_time(const OemMessage& message);
 
-/// BESTXYZ (id 241). Without a velocity solution has_velocity is false.
+/// Reads BESTXYZ (id 241). Without a velocity solution has_velocity is false.
 Result<ReceiverPosition> read_best_xyz(const OemMessage& message);
 
-/// BESTPOS (id 42): geodetic on WGS 84, converted to Cartesian here; no velocity. Its standard deviations are of north,
-/// east and up: each axis is assigned the root of their sum of squares.
+/// Reads BESTPOS (id 42): geodetic on WGS 84, converted to Cartesian here; no velocity. Its standard deviations are
+/// those of north, east and up: each axis is assigned the root of their sum of squares.
 Result<ReceiverPosition> read_best_position(const OemMessage& message);
 
 }  // namespace vbar::fsw::gnss

@@ -23,7 +23,7 @@
 
 namespace vbar::fsw::gnss {
 
-/// Header, body and CRC of the longest message accepted: a RANGE of 185 signals fits, more than an OEM628 has
+/// Length of the longest message accepted, header, body and CRC: a RANGE of 185 signals fits, more than an OEM628 has
 /// channels (120).
 inline constexpr std::size_t kMaxOemMessageBytes = 8192;
 
@@ -34,14 +34,14 @@ struct OemMessage {
   std::uint8_t format = 0;       ///< 0: binary. A binary header may also wrap ASCII
   std::uint8_t source = 0;       ///< 1: the receiver's second antenna. Older receivers leave other numbers in it
   std::uint8_t time_status = 0;  ///< 0 with a short header, which has none
-  std::uint16_t week = 0;        ///< of GPS, counted from 1980 without rollover
+  std::uint16_t week = 0;        ///< GPS week, counted from 1980 without rollover
   std::uint32_t time_of_week_ms = 0;
   std::span<const std::uint8_t> body;
 };
 
 struct OemStreamCounters {
   std::uint64_t bytes = 0;          ///< received
-  std::uint64_t message_bytes = 0;  ///< of these, in reported messages
+  std::uint64_t message_bytes = 0;  ///< bytes received in reported messages
   std::uint32_t messages = 0;
   std::uint32_t bad_checksum = 0;  ///< candidates that were complete and had a wrong CRC
   std::uint32_t bad_header = 0;    ///< candidates with an invalid header length
@@ -54,22 +54,22 @@ class OemStream {
  public:
   static constexpr std::size_t kMaxOpenCandidates = 16;
 
-  /// Takes one byte. True when it completes a message, which message() returns until the next push.
+  /// Processes one byte. Returns true when it completes a message, which message() returns until the next push.
   [[nodiscard]] bool push(std::uint8_t byte);
 
-  /// The message that push reported; empty if it reported none.
+  /// Returns the message that push reported; empty if it reported none.
   [[nodiscard]] OemMessage message() const;
 
   [[nodiscard]] const OemStreamCounters& counters() const { return counters_; }
 
-  /// Bytes that belong to no message.
+  /// Number of bytes that belong to no message.
   [[nodiscard]] std::uint64_t skipped_bytes() const { return counters_.bytes - counters_.message_bytes - size_; }
 
  private:
   struct Candidate {
-    std::size_t start = 0;   ///< of its sync pattern, in buffer_
-    std::size_t length = 0;  ///< of the complete message; 0 until its header has arrived
-    std::uint32_t crc = 0;   ///< over the bytes so far
+    std::size_t start = 0;   ///< position of its sync pattern, in buffer_
+    std::size_t length = 0;  ///< length of the complete message; 0 until its header has arrived
+    std::uint32_t crc = 0;   ///< CRC over the bytes so far
   };
   enum class Verdict : std::uint8_t { kOpen, kWhole, kFalse };
 

@@ -23,8 +23,8 @@ enum class OemTimeStatus : std::uint8_t {
   kSatTime = 200,
 };
 
-/// The receiver's own time of the message, exact. kNotReady: the receiver does not know the time (unknown, approximate
-/// within seconds, or week 0). kOutOfRange: an unknown status, a week after 2171, a time of week beyond a
+/// Returns the receiver's own time of the message, exact. kNotReady: the receiver does not have the time (unknown,
+/// approximate within seconds, or week 0). kOutOfRange: an unknown status, a week after 2171, a time of week beyond a
 /// week.
 Result<GpsTime> time_of(const OemMessage& message);
 

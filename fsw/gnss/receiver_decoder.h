@@ -1,6 +1,5 @@
 #pragma once
-// From the bytes of one receiver to observations and ephemerides: the stream, its messages, their
-// contents.
+// Conversion of the bytes of one receiver to observations and ephemerides: the stream, its messages, their contents.
 
 #include "fsw/core/result.h"
 #include "fsw/gnss/ephemeris.h"
@@ -28,10 +27,10 @@ struct ReceiverCounters {
   ObservationTally observations;
 };
 
-/// The complete state is plain data, so that a copy continues as the original does.
+/// Decodes the bytes of one receiver. The complete state is plain data, so that a copy continues as the original does.
 class ReceiverDecoder {
  public:
-  /// Takes one byte. The data reported as updated can be read until the next push.
+  /// Processes one byte. The data reported as updated can be read until the next push.
   [[nodiscard]] ReceiverUpdate push(std::uint8_t byte);
 
   [[nodiscard]] const ObservationEpoch& observations() const { return observations_; }

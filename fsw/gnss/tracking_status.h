@@ -11,7 +11,7 @@ namespace vbar::fsw::gnss {
 
 struct TrackingStatus {
   bool phase_lock = false;
-  bool parity_known = false;  ///< otherwise the carrier phase may be off by half a cycle
+  bool parity_known = false;  ///< if false, the carrier phase may be off by half a cycle
   bool code_lock = false;
   std::uint8_t system = 0;  ///< 0 GPS, 1 GLONASS, 2 SBAS, 3 Galileo, 4 BeiDou, ...
   std::uint8_t signal = 0;  ///< the receiver's number for the signal, per system
@@ -25,15 +25,15 @@ constexpr TrackingStatus tracking_status(std::uint32_t word) {
           .signal = static_cast<std::uint8_t>((word >> 21U) & 31U)};
 }
 
-/// A signal used on board, and the rank of its code if a receiver tracks the same signal by several (lower
-/// is better). All satellites of GPS send the P code on L2, only the newer ones L2C.
+/// Signal used on board, and the rank of its code if a receiver tracks the same signal by several codes (lower is
+/// better). All satellites of GPS send the P code on L2, only the newer ones L2C.
 struct UsedSignal {
   Constellation constellation = Constellation::kGps;
   Signal signal = Signal::kGpsL1;
   std::uint8_t code_rank = 0;
 };
 
-/// No value for a signal not used on board.
+/// Returns the signal; no value for one not used on board.
 constexpr std::optional<UsedSignal> used_signal(const TrackingStatus& status) {
   constexpr std::uint8_t kGps = 0;
   constexpr std::uint8_t kGalileo = 3;
@@ -53,7 +53,7 @@ constexpr std::optional<UsedSignal> used_signal(const TrackingStatus& status) {
   return std::nullopt;
 }
 
-/// Highest satellite number of a system's interface document.
+/// Returns the highest satellite number of a system's interface document.
 constexpr std::uint8_t highest_prn(Constellation constellation) {
   switch (constellation) {
     case Constellation::kGps:

@@ -38,7 +38,7 @@ int between(int a, int b, int position) {
   return a + static_cast<int>((part * (b - a)) >> 20);
 }
 
-/// Of a few values, which are sorted; of an even number the darker middle one, since errors are towards bright.
+/// Median of a few values, which are sorted; for an even number the darker middle one, since errors are towards bright.
 int middle_of(std::span<int> values) {
   for (std::size_t end = 1; end < values.size(); ++end) {
     for (std::size_t k = end; k > 0 && values[k] < values[k - 1]; --k) std::swap(values[k], values[k - 1]);

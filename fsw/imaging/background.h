@@ -13,7 +13,7 @@
 
 namespace vbar::fsw::imaging {
 
-/// Whether an image can be evaluated.
+/// Condition of an image for evaluation.
 enum class ImageCondition : std::uint8_t {
   kGood = 0,
   kBlank,      ///< all pixels are equal: not the output of a detector, which has noise
@@ -28,28 +28,28 @@ class Background {
   using RowNodes = std::array<int, 68>;
   static constexpr int kMaxNoises = 100 * 16;
 
-  /// Level and noise of the image. Saturated pixels (`saturation_dn`, 1 to 4095, and above) and missing ones are
-  /// excluded. The functions below refer to the last image that was kGood.
+  /// Measures level and noise of the image. Saturated pixels (`saturation_dn`, 1 to 4095, and above) and missing ones
+  /// are excluded. The functions below refer to the last image that was kGood.
   [[nodiscard]] ImageCondition measure(const ImageView& image, int saturation_dn);
 
-  /// Level along row y.
+  /// Computes the level along row y.
   void level_row(int y, RowNodes& nodes) const;
-  /// Threshold of the sum of nine pixels along row y for detection: nine levels, noises_q4 / 16 times
-  /// the noise (1 sigma) of one pixel, at most kMaxNoises, and the uncertainty of the level between nodes.
+  /// Computes the detection threshold of the sum of nine pixels along row y: nine levels, noises_q4 / 16 times the
+  /// noise (1 sigma) of one pixel, at most kMaxNoises, and the uncertainty of the level between nodes.
   void threshold_row(int y, int noises_q4, RowNodes& nodes) const;
-  /// Either at pixel x of the row, DN / 256, rounded down.
+  /// Returns either quantity at pixel x of the row, DN / 256, rounded down.
   [[nodiscard]] int at(const RowNodes& nodes, int x) const;
-  /// Either at every pixel of the row, DN, rounded down.
+  /// Writes either quantity at every pixel of the row, DN, rounded down.
   void fill(const RowNodes& nodes, std::span<int> out_dn) const;
 
-  /// Level and 1 sigma at a pixel, DN.
+  /// Returns level and 1 sigma at a pixel, DN.
   [[nodiscard]] double level_dn(int x, int y) const;
   [[nodiscard]] double noise_dn(int x, int y) const;
 
   /// Medians over the image, DN.
   [[nodiscard]] double typical_level_dn() const { return typical_level_dn_; }
   [[nodiscard]] double typical_noise_dn() const { return typical_noise_dn_; }
-  /// Pixels evaluated (a quarter of the image) and those of them that are saturated or missing.
+  /// Number of pixels evaluated (a quarter of the image), and of those that are saturated or missing.
   [[nodiscard]] int sampled() const { return sampled_; }
   [[nodiscard]] int saturated() const { return saturated_; }
   [[nodiscard]] int missing() const { return missing_; }
@@ -68,7 +68,7 @@ class Background {
   using Grid = std::array<int, kMaxNodes>;
 
   [[nodiscard]] static Axis axis_of(int pixels);
-  [[nodiscard]] std::size_t node(int column, int row) const {  ///< of a cell; -1 and `cells` are beyond the ends
+  [[nodiscard]] std::size_t node(int column, int row) const {  ///< node of a cell; -1 and `cells` are beyond the ends
     const int k = (row + 1) * (x_.cells + 2) + column + 1;
     return static_cast<std::size_t>(k);
   }
@@ -91,13 +91,13 @@ class Background {
   std::array<std::int16_t, 68> segment_begin_{};  ///< the first pixel of a row that lies beyond node k
   Grid level_{};                                  ///< DN / 256
   Grid noise_{};                                  ///< 1 sigma of a pixel, DN / 256
-  Grid level_uncertainty_{};                      ///< of the level between nodes, DN / 256
+  Grid level_uncertainty_{};                      ///< uncertainty of the level between nodes, DN / 256
   Grid scratch_{};
   std::array<bool, kMaxNodes> is_known_{};
   double typical_level_dn_ = 0.0;
   double typical_noise_dn_ = 0.0;
 
-  // Of the cell in work
+  // Statistics of the cell in work
   static constexpr std::size_t kLevels = 4096;
   static constexpr int kMaxDifference = 511;
   std::array<std::uint16_t, kLevels> level_count_{};
@@ -106,7 +106,7 @@ class Background {
   int differences_ = 0;  ///< pairs counted
   int lowest_ = 0;       ///< level
   int highest_ = 0;
-  // Of the image
+  // Statistics of the image
   int sampled_ = 0;
   int saturated_ = 0;
   int missing_ = 0;

@@ -63,9 +63,9 @@ class Sums {
  private:
   ImageView image_;
   double gain_;
-  int level_ = 0;  // of nine pixels
+  int level_ = 0;  // level of nine pixels
   int threshold_ = 0;
-  double variance_ = 0.0;  // of nine pixels without light
+  double variance_ = 0.0;  // variance of nine pixels without light
 };
 
 /// The brightest maxima, in order.

@@ -14,16 +14,16 @@ struct Blend {
   struct Peak {
     int x = 0;  ///< px, from the image's first pixel
     int y = 0;
-    int sum_dn = 0;  ///< of the 3 x 3 pixels around, above the background
+    int sum_dn = 0;  ///< sum of the 3 x 3 pixels around, above the background
   };
   std::array<Peak, kMaxPeaks> peaks{};  ///< brightest first
   std::size_t count = 0;
 };
 
-/// The maxima of sums of 3 x 3 pixels within the component, each of which exceeds the minimum on the straight path to
-/// every brighter one by four times the noise of that difference; the path itself exceeds the background by
-/// `detection_sigmas`, else it leads to another component. At most kMaxPeaks, the brightest; 1 for a component of one
-/// point.
+/// Returns the maxima of sums of 3 x 3 pixels within the component. Each exceeds the minimum on the straight path to
+/// every brighter one by four times the noise of that difference. The path itself exceeds the background by
+/// `detection_sigmas`; otherwise it leads to another component. At most kMaxPeaks, the brightest, are returned; 1 for a
+/// component of one point.
 Blend separate(const ImageView& image, const Background& background, const Component& component,
                double gain_dn_per_electron, double detection_sigmas);
 

@@ -6,7 +6,8 @@ namespace vbar::fsw::imaging {
 namespace {
 
 constexpr int kMaxIterations = 20;
-/// Of the normalised image plane, 1e-6 px for any practical lens; Newton's next step would be its square.
+/// Convergence limit in the normalised image plane, 1e-6 px for any practical lens; Newton's next step would be its
+/// square.
 constexpr double kSmallestStep = 1e-12;
 /// Half a field of 84 degrees: directions further off are not in front of the camera.
 constexpr double kMinCosine = 0.1;
@@ -23,7 +24,7 @@ Distorted distort(const std::array<double, 5>& coefficients, const Vector2& p) {
   const double y = p.y();
   const double r2 = x * x + y * y;
   const double radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
-  const double slope = 2.0 * (k1 + r2 * (2.0 * k2 + r2 * 3.0 * k3));  // of `radial`, by x over x and by y over y
+  const double slope = 2.0 * (k1 + r2 * (2.0 * k2 + r2 * 3.0 * k3));  // d(radial)/dx / x = d(radial)/dy / y
   Distorted d;
   d.point = {x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x),
              y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y};

@@ -16,10 +16,10 @@ struct CameraModel {
   std::array<double, 5> distortion{};
 };
 
-/// Unit vector in camera axes. kDidNotConverge where the distortion cannot be inverted.
+/// Returns the unit vector in camera axes. kDidNotConverge where the distortion cannot be inverted.
 Result<Vector3> direction_of(const CameraModel& camera, const Vector2& pixel);
 
-/// kOutOfRange for directions not in front of the camera (z <= 0.1 of the norm).
+/// Returns the pixel of a direction. kOutOfRange for directions not in front of the camera (z <= 0.1 of the norm).
 Result<Vector2> pixel_of(const CameraModel& camera, const Vector3& direction_camera);
 
 /// Projection of a point in camera axes (m), and the Jacobian of its pixel.

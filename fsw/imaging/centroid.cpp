@@ -8,7 +8,7 @@
 namespace vbar::fsw::imaging {
 namespace {
 
-constexpr double kUnit = 16.0;  // of a component's brightness
+constexpr double kUnit = 16.0;  // units of a component's brightness per DN
 /// Sigma of the window over that of a point's image (pixel included), and its minimum, px: in a narrower window a few
 /// pixels dominate, and the centroid is biased towards their centres.
 constexpr double kWindowWidth = 1.25;
@@ -43,7 +43,7 @@ struct Sums {
   double light = 0.0;       // weighted
   double x = 0.0, y = 0.0;  // first moments about the centre
   // If asked for:
-  double variance_x = 0.0, variance_y = 0.0;  // of the first moments
+  double variance_x = 0.0, variance_y = 0.0;  // variances of the first moments
   double xx = 0.0, yy = 0.0;                  // second moments
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Centroid of an object.
+// Centroid of an object in an image.
 
 #include "fsw/imaging/background.h"
 #include "fsw/imaging/components.h"
@@ -15,17 +15,18 @@ struct Centroid {
   bool is_cut = false;     ///< its window extends beyond the image or into missing pixels
 };
 
-/// Iterated Gaussian-weighted centroid of a point source, starting from the brightest 3 x 3 pixels of its component:
-/// SExtractor's windowed positions (docs of SExtractor 2.19, section 10.7.1; for a Gaussian source as good as a fit).
-/// The window is somewhat wider than the image of a point, which keeps the bias of sampling below 0.003 px at a width
-/// of 0.8 px. Not found if it diverges or there is no light: then the component's own moments are better.
+/// Returns the iterated Gaussian-weighted centroid of a point source, starting from the brightest 3 x 3 pixels of its
+/// component: SExtractor's windowed positions (docs of SExtractor 2.19, section 10.7.1; for a Gaussian source as good
+/// as a fit). The window is somewhat wider than the image of a point, which keeps the bias of sampling below 0.003 px
+/// at a width of 0.8 px. The centroid is not found if the iteration diverges or there is no light: then the component's
+/// own moments are better.
 Centroid windowed_centroid(const ImageView& image, const Background& background, const Component& component,
                            double point_spread_sigma_px, double gain_dn_per_electron);
 
-/// Intensity-weighted mean over the component's pixels.
+/// Returns the intensity-weighted mean over the component's pixels.
 Centroid component_centroid(const Background& background, const Component& component, double gain_dn_per_electron);
 
-/// Root of the larger eigenvalue of the component's intensity-weighted second moments, px.
+/// Returns the root of the larger eigenvalue of the component's intensity-weighted second moments, px.
 double component_radius(const Component& component);
 
 }  // namespace vbar::fsw::imaging

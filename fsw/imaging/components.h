@@ -12,7 +12,7 @@
 
 namespace vbar::fsw::imaging {
 
-/// Brightness above the background in DN / 16; coordinates from the image's first pixel.
+/// Connected pixels, with brightness above the background in DN / 16 and coordinates from the image's first pixel.
 struct Component {
   int pixels = 0;
   int x_min = 0, x_max = 0, y_min = 0, y_max = 0;
@@ -25,25 +25,25 @@ struct Component {
   std::int64_t flux = 0, flux_x = 0, flux_y = 0, flux_xx = 0, flux_xy = 0, flux_yy = 0;
 };
 
-/// Brightest first; of equally bright ones, from the top and from the left.
+/// Order of components: brightest first; equally bright ones from the top and from the left.
 bool is_brighter(const Component& a, const Component& b);
 
 class Components {
  public:
   static constexpr std::size_t kMaxRunsOfRow = 512;
 
-  /// Before an image. Components of more than `largest_px` pixels are extended: counted, not kept.
+  /// Prepares for an image. Components of more than `largest_px` pixels are extended: counted, not kept.
   void clear(int largest_px);
 
-  /// The next run of row y, pixels begin to end - 1; rows from the top, runs from the left. Returns its component
+  /// Adds the next run of row y, pixels begin to end - 1; rows from the top, runs from the left. Returns its component
   /// so far, to which the caller adds the run's pixels; null if the row has too many runs.
   Component* add_run(int y, int begin, int end);
-  /// No more runs of row y.
+  /// Ends row y.
   void end_row(int y);
-  /// No more rows. Sorts the components kept.
+  /// Ends the image and sorts the components kept.
   void finish();
 
-  /// After finish(): at most kMaxObjects, the brightest of all.
+  /// Components after finish(): at most kMaxObjects, the brightest of all.
   [[nodiscard]] std::span<const Component> kept() const { return std::span(kept_).first(kept_count_); }
 
   [[nodiscard]] int found() const { return found_; }  ///< extended ones included
@@ -71,7 +71,7 @@ class Components {
   [[nodiscard]] Component& component(Label label) { return components_[static_cast<std::size_t>(label)]; }
 
   int largest_px_ = 0;
-  std::array<std::array<Run, kMaxRunsOfRow>, 2> runs_{};  ///< of this row and of the one before
+  std::array<std::array<Run, kMaxRunsOfRow>, 2> runs_{};  ///< runs of this row and of the previous one
   std::array<std::size_t, 2> run_count_{};
   std::size_t now_ = 0;     ///< which of the two is this row
   std::size_t before_ = 0;  ///< first run of the previous row that a later run of this one may touch

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kClip = 3.0;
 constexpr int kMaxIterations = 6;
-/// Of equal integers: rounding alone has a standard deviation of sqrt(1/12).
+/// Smallest sigma, that of equal integers: rounding alone has a standard deviation of sqrt(1/12).
 constexpr double kMinSigma = 0.28867513459481287;
 constexpr double kQuartilesPerSigma = 1.3489795003921634;  // from the lower to the upper
 

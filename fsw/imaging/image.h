@@ -8,7 +8,7 @@
 namespace vbar::fsw::imaging {
 
 inline constexpr std::size_t kMaxPixels = 400'000;
-inline constexpr int kMaxSide = 4096;  ///< of an image's width and height, px
+inline constexpr int kMaxSide = 4096;  ///< largest width and height of an image, px
 /// Pixels in every tile but the last (vbar.lcm, image_tile).
 inline constexpr int kTilePixels12 = 868;
 inline constexpr int kTilePixels8 = 1302;
@@ -17,7 +17,7 @@ inline constexpr int kTilePixels8 = 1302;
 struct ImageFrame {
   int width = 0;
   int height = 0;
-  int origin_x = 0;  ///< of its first pixel on the detector
+  int origin_x = 0;  ///< position of its first pixel on the detector
   int origin_y = 0;
   int bits = 12;
   friend constexpr bool operator==(const ImageFrame&, const ImageFrame&) = default;
@@ -26,7 +26,7 @@ struct ImageFrame {
 /// A pixel that never arrived. No detector outputs it: 12 bits end at 4095.
 inline constexpr std::uint16_t kMissingPixel = 0xFFFF;
 
-/// Rows from the top, pixels from the left. The pixels are owned by the caller.
+/// Pixels of an image: rows from the top, pixels from the left. They are owned by the caller.
 struct ImageView {
   ImageFrame frame;
   std::span<const std::uint16_t> pixels;  ///< width * height

@@ -19,10 +19,10 @@
 namespace vbar::fsw::imaging {
 
 struct DetectorSettings {
-  double detection_sigmas = 5.0;  ///< of the noise of a sum of 3 x 3 pixels, 1 to 30. 5: a false object in ten images
+  double detection_sigmas = 5.0;  ///< sigmas of a sum of 3 x 3 pixels, 1 to 30; 5: a false object in ten images
   double gain_dn_per_electron = 0.125;
   int saturation_dn = 4000;            ///< a pixel of this value or more is saturated, 1 to 4095
-  double point_spread_sigma_px = 0.8;  ///< of the image of a point, before the pixel's own width, 0.3 to 3
+  double point_spread_sigma_px = 0.8;  ///< sigma of the image of a point, before the pixel's own width, 0.3 to 3
   int largest_object_px = 20000;       ///< pixels
 };
 
@@ -32,24 +32,24 @@ struct DetectionReport {
   double noise_dn = 0.0;                                ///< 1 sigma of a pixel, median over the image
   int components = 0;                                   ///< all components found
   int objects = 0;                                      ///< measured and reported
-  int extended = 0;                                     ///< of the components, larger than largest_object_px
-  int pixels_rejected = 0;                              ///< of the extended ones
-  int fragments = 0;                                    ///< of the components, parts of a bright halo: not reported
+  int extended = 0;                                     ///< components larger than largest_object_px
+  int pixels_rejected = 0;                              ///< pixels of the extended components
+  int fragments = 0;                                    ///< components that are parts of a bright halo: not reported
   int runs_dropped = 0;                                 ///< not 0: a row had too many runs to be processed
 };
 
-/// Some 300 kB, all of it workspace: no information is kept between images.
+/// Detects and measures the objects of an image. Its 300 kB are workspace: no information is kept between images.
 ///
-/// A point that is neither saturated nor at an edge is measured by centroid.h, windowed_centroid(), also two that
-/// touch. Objects that are saturated or wider are measured by the intensity-weighted mean of all their pixels: for a
-/// saturated point the accuracy is limited by rounding of the bright disc's edge to pixels, 0.06 px, which its sigma
-/// excludes.
+/// A point that is neither saturated nor at an edge is measured by windowed_centroid() of centroid.h, also if two
+/// points touch. Objects that are saturated or wider are measured by the intensity-weighted mean of all their pixels:
+/// for a saturated point the accuracy is limited by rounding of the bright disc's edge to pixels, 0.06 px, which its
+/// sigma excludes.
 class ObjectDetector {
  public:
   /// Searches the complete image, without a preferred position.
   DetectionReport detect(const ImageView& image, const DetectorSettings& settings);
 
-  /// Of the last image, brightest first. In detector coordinates: the image's origin is added.
+  /// Objects of the last image, brightest first, in detector coordinates: the image's origin is added.
   [[nodiscard]] std::span<const DetectedObject> objects() const { return std::span(objects_).first(object_count_); }
 
  private:
@@ -81,12 +81,12 @@ class ObjectDetector {
   std::array<DetectedObject, kMaxObjects> objects_{};
   std::size_t object_count_ = 0;
 
-  // Of the current image
+  // Data of the current image
   ImageView image_;
   DetectorSettings settings_;
   int noises_q4_ = 0;  ///< threshold above the background of nine pixels, in sigmas of one / 16
 
-  // Of the current row
+  // Data of the current row
   std::array<const std::uint16_t*, 3> rows_{};  ///< above, this, below
   std::array<std::array<std::uint16_t, kMaxSide>, 3> patched_{};
   bool is_patched_ = false;

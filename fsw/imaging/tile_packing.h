@@ -1,7 +1,7 @@
 #pragma once
-// Encoding of pixels in the bytes of a tile (vbar.lcm, image_tile), for both ends of the link. 8 bits: one byte
-// per pixel. 12 bits, big-endian: two pixels in three bytes; an odd last one fills its first byte and the upper half of
-// its second, the lower half is zero.
+// Encoding of pixels in the bytes of a tile (vbar.lcm, image_tile), for both ends of the link. 8 bits: one byte per
+// pixel. 12 bits, big-endian: two pixels in three bytes; an odd last one fills its first byte and the upper half of its
+// second, whose lower half is zero.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace vbar::fsw::imaging {
 
-/// Number of bytes for `pixels` pixels of 8 or 12 bits; 0 for any other number of bits.
+/// Returns the number of bytes for `pixels` pixels of 8 or 12 bits; 0 for any other number of bits.
 constexpr std::size_t packed_size(std::size_t pixels, int bits) {
   if (bits == 8) return pixels;
   return bits == 12 ? (3 * pixels + 1) / 2 : 0;

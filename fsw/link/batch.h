@@ -1,7 +1,8 @@
 #pragma once
 // The two ends of a batch of a step (frame.h): go-back-N with a cumulative acknowledgement. Both sides of a link use
-// the same two state machines, one for the batch they send and one for the batch they receive. No I/O, no time, no
-// storage of packets: the owner sends the packet named by the sender, stores those accepted by the receiver, decides
+// the same two state machines, one for the batch they send and one for the batch they receive. The machines do no I/O,
+// have no time and store no packets: the owner sends the packet named by the sender, stores those accepted by the
+// receiver, and decides when to poll. A batch has at most 65,535 packets.
 // when to poll. A batch has at most 65,535 packets.
 
 #include <cstdint>
@@ -17,7 +18,7 @@ class BatchReceiver {
     kTaken,       ///< the next packet: the owner stores its payload now
     kDuplicate,   ///< received already
     kOutOfOrder,  ///< one before it is missing
-    kForeign,     ///< of another session or step, or no batch is open
+    kForeign,     ///< belongs to another session or step, or no batch is open
   };
   struct Decision {
     Verdict verdict = Verdict::kForeign;
@@ -32,12 +33,12 @@ class BatchReceiver {
   /// Classifies a kData frame.
   Decision offer(const FrameHeader& frame);
 
-  /// kAck with the number of packets received.
+  /// Returns a kAck with the number of packets received.
   [[nodiscard]] FrameHeader acknowledgement() const;
   [[nodiscard]] bool is_open() const { return open_; }
   [[nodiscard]] bool complete() const { return complete_; }
   [[nodiscard]] std::uint32_t step() const { return step_; }
-  /// Packets received without a gap.
+  /// Number of packets received without a gap.
   [[nodiscard]] std::uint16_t held() const { return held_; }
 
  private:
@@ -54,23 +55,24 @@ class BatchSender {
   /// Starts the batch of (session, step) with `count` packets, at least one.
   void open(std::uint32_t session, std::uint32_t step, std::uint16_t count);
 
-  /// True while the window has room for another packet: the one of `next_header().index`.
+  /// Returns true while the window has room for another packet: the one of `next_header().index`.
   [[nodiscard]] bool can_send() const { return next_ < count_ && next_ - acknowledged_ < kWindow; }
-  /// Header of the next packet to send; only while can_send().
+  /// Returns the header of the next packet to send; only while can_send().
   [[nodiscard]] FrameHeader next_header() const;
-  /// The packet of next_header() was sent.
+  /// Records that the packet of next_header() was sent.
   void sent();
 
-  /// The other side has received `held` packets. Older acknowledgements, and more than was ever sent, have no effect.
-  void acknowledge(std::uint16_t held);
-  /// The other side has received `held` packets and lost the following: sending resumes there. Invalid numbers have
+  /// Records that the other side has received `held` packets. Older acknowledgements, and more than was ever sent, have
   /// no effect.
+  void acknowledge(std::uint16_t held);
+  /// Records that the other side has received `held` packets and lost the following ones: sending resumes there.
+  /// Invalid numbers have no effect.
   void rewind(std::uint16_t held);
 
   [[nodiscard]] std::uint32_t step() const { return step_; }
   [[nodiscard]] std::uint16_t count() const { return count_; }
   [[nodiscard]] bool all_acknowledged() const { return acknowledged_ == count_; }
-  /// Packets sent more than once, over all batches.
+  /// Number of packets sent more than once, over all batches.
   [[nodiscard]] std::uint32_t resent() const { return resent_; }
 
  private:

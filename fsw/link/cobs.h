@@ -11,17 +11,17 @@
 
 namespace vbar::fsw::link {
 
-/// COBS image of `data` followed by the zero delimiter; returns its length. kTooLong if `out` is too small.
+/// Writes the COBS image of `data` followed by the zero delimiter; returns its length. kTooLong if `out` is too small.
 Result<std::size_t> cobs_encode(std::span<const std::uint8_t> data, std::span<std::uint8_t> out);
 
-/// Incremental decoder of a byte stream. Resynchronises at the next zero after anything malformed or oversized.
+/// Decodes a byte stream incrementally. Resynchronises at the next zero after anything malformed or oversized.
 class CobsDecoder {
  public:
-  /// Takes one byte. Returns true when it completes a well-formed frame, which `frame()` then returns until the next
-  /// push.
+  /// Processes one byte. Returns true when it completes a well-formed frame, which `frame()` then returns until the
+  /// next push.
   bool push(std::uint8_t byte);
   [[nodiscard]] std::span<const std::uint8_t> frame() const { return {buffer_.data(), frame_size_}; }
-  /// Malformed (a code that runs past its zero) or oversized frames dropped so far.
+  /// Number of frames dropped so far: malformed (a code that runs past its zero) or oversized.
   [[nodiscard]] std::uint32_t rejected() const { return rejected_; }
 
  private:

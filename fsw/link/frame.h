@@ -5,7 +5,7 @@
 //
 //   byte  0      protocol version (kProtocolVersion)
 //   byte  1      FrameType
-//   bytes 2-5    session, a number the host draws at each start: frames of an older run are refused
+//   bytes 2-5    session, a number the host draws at each start: frames of an older run are rejected
 //   bytes 6-9    step
 //   bytes 10-11  index: kData, position of this packet in its batch; kAck and kPoll, packets received without a gap
 //   byte  12     flags: bit 0, last packet of the batch; bit 1, answer with kAck at once
@@ -24,7 +24,7 @@
 // The exchange (go-back-N, window kWindow, both ways):
 //   host  kHello (repeated until answered)         board  resets the flight software, kHelloAck
 //   host  kData 0..n-1 of step N, the last one flagged; after kWindow unacknowledged ones it waits for kAck
-//   board takes kData only in order (others are counted and dropped; every kWindow/2 taken, or on demand, kAck);
+//   board accepts kData only in order (others are counted and dropped; kAck every kWindow/2 or on demand);
 //         once the flagged one is in: runs the step, keeps its answer, sends it as kData 0..m-1 of step N, last flagged
 //   host  acknowledges the answer the same way; after a time without reception: kPoll(N, packets received).
 //   board on kPoll: if its inputs of N are incomplete, kAck with their number; else its answer again from that index
@@ -32,8 +32,7 @@
 //   host  before a step, kReceiverPoll: the board answers kReceiverCount at once. In lock-step the host begins the step
 //         when the board has all that the receiver has sent.
 //   board that no longer flies the session, after a reset or a step beyond its budget: answers kData, and kPoll of a
-//   step
-//         that it has not run, with the kHelloAck that states the reason
+//        step that it has not run, with the kHelloAck that states the reason
 //   host  between two steps, kSnapshotPoll (offset in bytes): the board saves its flight software, once until the next
 //         step, and answers kSnapshotPiece (size of the snapshot, offset, bytes from there on; size 0: there is none)
 //   host  before the first step, kSnapshotPiece, each beginning where the last has ended: the board answers
@@ -59,14 +58,14 @@ inline constexpr std::size_t kMaxCobsFrameBytes = kMaxFrameBytes + kMaxFrameByte
 inline constexpr std::uint16_t kWindow = 32;
 static_assert(packets::kMaxPacketBytes + kFrameHeaderBytes + kFrameCrcBytes <= kMaxFrameBytes);
 
-/// Payload of a kHello without and with the rate of the receiver's line, and with that and a budget; of a
+/// Payload of a kHello without and with the rate of the receiver's line, and with that and a budget; then that of a
 /// kReceiverCount.
 inline constexpr std::size_t kHelloBytes = 1;
 inline constexpr std::size_t kHelloWithReceiverBytes = 5;
 inline constexpr std::size_t kHelloWithBudgetBytes = 13;
 inline constexpr std::size_t kReceiverCountBytes = 8;
 
-/// Payload of a kSnapshotPoll and of a kSnapshotHeld; of a kSnapshotPiece before its content, and the most content.
+/// Payload of a kSnapshotPoll and of a kSnapshotHeld; header and largest content of a kSnapshotPiece.
 inline constexpr std::size_t kSnapshotPollBytes = 4;
 inline constexpr std::size_t kSnapshotHeldBytes = 8;
 inline constexpr std::size_t kSnapshotPieceHeaderBytes = 8;
@@ -101,11 +100,11 @@ struct FrameView {
   std::span<const std::uint8_t> payload;
 };
 
-/// Writes a frame (not COBS-coded); returns its length. kTooLong.
+/// Writes a frame (not COBS-coded); returns its length. kTooLong if `out` is too small.
 Result<std::size_t> write_frame(const FrameHeader& header, std::span<const std::uint8_t> payload,
                                 std::span<std::uint8_t> out);
 
-/// Checks length, CRC, version, type. kTooShort, kTooLong, kBadChecksum, kWrongType.
+/// Parses a frame after checks of length, CRC, version and type. kTooShort, kTooLong, kBadChecksum, kWrongType.
 Result<FrameView> parse_frame(std::span<const std::uint8_t> bytes);
 
 }  // namespace vbar::fsw::link

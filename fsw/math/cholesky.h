@@ -1,6 +1,6 @@
 #pragma once
-// Cholesky factor of a small symmetric positive definite matrix. Eigen's has a blocked branch for large matrices that
-// leaves heap calls in the object code even of a 6x6; this one has none.
+// Cholesky factor of a small symmetric positive definite matrix, A = L L'. Eigen's own has a blocked branch for large
+// matrices that leaves heap calls in the object code even of a 6x6; this one has none.
 
 #include <Eigen/Core>
 
@@ -8,7 +8,7 @@
 
 namespace vbar::fsw::math {
 
-/// A = L L'. Only the lower triangle of A is read.
+/// Factors A = L L'. Only the lower triangle of A is read.
 template <int N>
 class Cholesky {
  public:
@@ -34,14 +34,14 @@ class Cholesky {
     }
   }
 
-  /// False if A is not positive definite to rounding, or not finite; solve and the like are then meaningless.
+  /// Returns false if A is not positive definite to rounding, or not finite; the solutions are then meaningless.
   [[nodiscard]] bool ok() const { return smallest_pivot_ > 0.0; }
 
-  /// The smallest squared diagonal element of L, 0 unless ok: measures the linear dependence of the worst row of A on
-  /// those before.
+  /// Smallest squared diagonal element of L, 0 unless ok(): it measures the linear dependence of the worst row of A on
+  /// the rows before it.
   [[nodiscard]] double smallest_pivot() const { return smallest_pivot_; }
 
-  /// L^-1 b.
+  /// Returns L^-1 b.
   [[nodiscard]] Vector solve_lower(Vector b) const {
     for (int r = 0; r < N; ++r) {
       for (int k = 0; k < r; ++k) b(r) -= lower_(r, k) * b(k);
@@ -50,7 +50,7 @@ class Cholesky {
     return b;
   }
 
-  /// A^-1 b.
+  /// Returns A^-1 b.
   [[nodiscard]] Vector solve(const Vector& b) const {
     Vector x = solve_lower(b);
     for (int r = N - 1; r >= 0; --r) {
@@ -60,7 +60,7 @@ class Cholesky {
     return x;
   }
 
-  /// A^-1.
+  /// Returns A^-1.
   [[nodiscard]] Matrix inverse() const {
     Matrix result;
     for (int c = 0; c < N; ++c) result.col(c) = solve(Vector::Unit(c));

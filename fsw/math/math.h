@@ -35,12 +35,12 @@ inline bool is_finite(double x) {
   return x - x == 0.0;
 }
 
-/// sqrt(x^2+y^2); no guard against overflow, which cannot occur with lengths and speeds of orbits.
+/// Returns sqrt(x^2 + y^2). Overflow is not prevented; it cannot occur with lengths and speeds of orbits.
 inline double hypot(double x, double y) {
   return sqrt(x * x + y * y);
 }
 
-/// Angle mapped to (-pi, pi].
+/// Returns the angle mapped to (-pi, pi].
 double wrap_to_pi(double angle);
 
 }  // namespace vbar::fsw::math

@@ -6,7 +6,7 @@
 
 namespace vbar::fsw::math {
 
-/// Positive node and its weight on [-1, 1]; the rule is symmetric.
+/// Positive node of the symmetric rule on [-1, 1], and its weight.
 struct QuadratureNode {
   double x, weight;
 };
@@ -31,7 +31,7 @@ inline constexpr std::array<QuadratureNode, 16> kGaussLegendre32{{
     {0.9972638618494816, 0.007018610009470096},
 }};
 
-/// Integral of f over [a, b].
+/// Returns the integral of f over [a, b].
 template <class F>
 double integrate(const F& f, double a, double b) {
   const double middle = 0.5 * (a + b);

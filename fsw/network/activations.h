@@ -9,7 +9,7 @@ namespace vbar::fsw::network {
 struct Activations {
   FeatureStore<128, 1> input;
   FeatureStore<64, 24> stem;
-  FeatureStore<32, 40> passing_32;  ///< of the encoder, reused in the decoder
+  FeatureStore<32, 40> passing_32;  ///< output of the encoder, reused in the decoder
   FeatureStore<32, 40> kept_32;     ///< skip connection: of the encoder, until added in the decoder
   FeatureStore<16, 64> passing_16;
   FeatureStore<16, 64> kept_16;

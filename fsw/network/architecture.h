@@ -31,14 +31,14 @@ struct Layer {
     return static_cast<std::size_t>(kernel) * static_cast<std::size_t>(kernel) * static_cast<std::size_t>(in) *
            static_cast<std::size_t>(out);
   }
-  /// In a file, biases included.
+  /// Number of bytes in a file, biases included.
   [[nodiscard]] constexpr std::size_t bytes() const {
     return sizeof(float) * (weights() + static_cast<std::size_t>(out));
   }
 };
 
 inline constexpr int kLayerCount = 13;
-/// Of the last layer: a multiple of four; what follows the keypoints is not used.
+/// Channels of the last layer: a multiple of four; the channels after the keypoints are not used.
 inline constexpr int kMapChannels = 12;
 
 inline constexpr std::array<Layer, kLayerCount> kLayers{{
@@ -61,11 +61,11 @@ inline constexpr std::size_t kMagicBytes = 16;
 inline constexpr char kMagic[kMagicBytes + 1] = "vbar keypoints 2";
 inline constexpr std::size_t kLayerWords = 8;
 inline constexpr std::size_t kCalibrationOffset = kMagicBytes + 4 * 4 + kLayerCount * kLayerWords * 4;
-/// All before the first layer's weights.
+/// Number of bytes before the first layer's weights.
 inline constexpr std::size_t kHeaderBytes = kCalibrationOffset + 8 * sizeof(float);
 inline constexpr std::size_t kChecksumBytes = 4;
 
-/// Of a layer's weights in the file; of the checksum for layer kLayerCount.
+/// Position in the file of a layer's weights, and of the checksum for layer kLayerCount.
 constexpr std::size_t offset_of_layer(int layer) {
   std::size_t offset = kHeaderBytes;
   for (int l = 0; l < layer; ++l) offset += kLayers[static_cast<std::size_t>(l)].bytes();

@@ -22,7 +22,7 @@ struct Window {
   const float* first = nullptr;  ///< first channel under the first cell's kernel
   std::ptrdiff_t row_step = 0;
   std::ptrdiff_t cell_step = 0;  ///< from one output cell to the next
-  int rows = 0;                  ///< of the kernel
+  int rows = 0;                  ///< rows of the kernel
   int run = 0;                   ///< values of a kernel's row: its columns and their channels are contiguous
 };
 

@@ -35,7 +35,7 @@ Status KeypointNetwork::take_in(std::span<const float, kInputSamples> crop) {
     for (int column = 0; column < kInputSide; ++column) {
       const float sample = crop[static_cast<std::size_t>(row * kInputSide + column)];
       const float size = sample < 0.0F ? -sample : sample;
-      all_good = all_good && size <= kGreatestSample;  // written such that a NaN is refused
+      all_good = all_good && size <= kGreatestSample;  // a NaN is rejected as well
       *input.cell(row, column) = size > kMinActivation ? sample : 0.0F;
     }
   }

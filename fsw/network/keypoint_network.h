@@ -19,25 +19,25 @@ namespace vbar::fsw::network {
 
 class KeypointNetwork {
  public:
-  /// Uses `weights`, a file of data/networks, in place: it must stay valid. Checks all of it first: kTooShort,
+  /// Uses `weights`, a file of data/networks, in place: it must stay valid. Checks the complete file first: kTooShort,
   /// kTooLong, kWrongType (not such a file, or of another architecture), kBadChecksum, kNotFinite, kOutOfRange (a
-  /// weight that is not 0 and below 2^-40 or from 2^20 on in size, an invalid calibration). After a failure there
-  /// is no network.
+  /// weight that is not 0 and below 2^-40 or from 2^20 on in size, an invalid calibration). After a failure there is no
+  /// network.
   Status load(std::span<const std::byte> weights);
-  /// The same weights at another address: a state restored in another process still has that of the process which saved
-  /// it, and must be given its own before run().
+  /// Moves to the same weights at another address. A state restored in another process still has the address of the
+  /// process that saved it, and must be given its own before run().
   void relocate(std::span<const std::byte> same_weights) {
     if (is_loaded()) weights_ = same_weights;
   }
   [[nodiscard]] bool is_loaded() const { return !weights_.empty(); }
   [[nodiscard]] const Calibration& calibration() const { return calibration_; }
 
-  /// Rows from the top. kNotReady without weights; kNotFinite for a sample that is NaN or above 2^20 in size,
-  /// or if the heatmaps are not finite: they are then not valid. The computer must have the registers; they do not
-  /// change a bit of the result.
+  /// Runs the network on a crop, rows from the top. kNotReady without weights; kNotFinite for a sample that is NaN or
+  /// above 2^20 in size, or if the heatmaps are not finite: they are then not valid. The computer must have the
+  /// registers; they do not change a bit of the result.
   Status run(std::span<const float, kInputSamples> crop, Registers registers = widest_registers());
 
-  /// Of the last run: the logits of keypoint k, cells in rows. Their softmax over the heatmap is the probability
+  /// Logits of keypoint k in the last run, cells in rows. Their softmax over the heatmap is the probability
   /// distribution of the keypoint position.
   [[nodiscard]] std::span<const float, kMapCells> logits(int keypoint) const {
     return maps_[static_cast<std::size_t>(keypoint)];
@@ -53,7 +53,7 @@ class KeypointNetwork {
   std::array<std::array<float, kMapCells>, kKeypoints> maps_{};
 };
 
-/// The weights on board.
+/// Returns the weights on board.
 std::span<const std::byte> weights_on_board();
 
 }  // namespace vbar::fsw::network

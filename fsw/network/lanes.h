@@ -32,7 +32,7 @@ inline Lanes all(float x) {
 inline Lanes sum(Lanes a, Lanes b) {
   return vaddq_f32(a, b);
 }
-/// sum + w * x[k]
+/// Returns sum + w * x[k].
 template <int k>
 Lanes add_product(Lanes sum, Lanes w, Lanes x) {
   if constexpr (k < 2) {
@@ -41,11 +41,11 @@ Lanes add_product(Lanes sum, Lanes w, Lanes x) {
     return vmlaq_lane_f32(sum, w, vget_high_f32(x), k - 2);
   }
 }
-/// x where it exceeds the limit; elsewhere, and for a NaN, 0.
+/// Returns x where it exceeds the limit; elsewhere, and for a NaN, 0.
 inline Lanes where_above(Lanes x, float limit) {
   return vreinterpretq_f32_u32(vandq_u32(vcgtq_f32(x, all(limit)), vreinterpretq_u32_f32(x)));
 }
-/// The same of its size.
+/// Returns x where its size exceeds the limit; elsewhere, and for a NaN, 0.
 inline Lanes where_beyond(Lanes x, float limit) {
   return vreinterpretq_f32_u32(vandq_u32(vcgtq_f32(vabsq_f32(x), all(limit)), vreinterpretq_u32_f32(x)));
 }
@@ -68,16 +68,16 @@ inline Lanes all(float x) {
 inline Lanes sum(Lanes a, Lanes b) {
   return a + b;
 }
-/// sum + w * x[k]
+/// Returns sum + w * x[k].
 template <int k>
 Lanes add_product(Lanes sum, Lanes w, Lanes x) {
   return sum + w * all(x[k]);
 }
-/// x where it exceeds the limit; elsewhere, and for a NaN, 0.
+/// Returns x where it exceeds the limit; elsewhere, and for a NaN, 0.
 inline Lanes where_above(Lanes x, float limit) {
   return x > all(limit) ? x : all(0.0F);
 }
-/// The same of its size.
+/// Returns x where its size exceeds the limit; elsewhere, and for a NaN, 0.
 inline Lanes where_beyond(Lanes x, float limit) {
   return ((x > all(limit)) | (x < all(-limit))) ? x : all(0.0F);
 }

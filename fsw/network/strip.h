@@ -13,9 +13,9 @@ struct Strip {
   const float* first = nullptr;  ///< first channel under the first cell's kernel
   std::ptrdiff_t row_step = 0;
   std::ptrdiff_t cell_step = 0;        ///< from one output cell to the next
-  int rows = 0;                        ///< of the kernel
+  int rows = 0;                        ///< rows of the kernel
   int run = 0;                         ///< values of a kernel's row: its columns and their channels are contiguous
-  const std::byte* weights = nullptr;  ///< of the layer, as the file has them
+  const std::byte* weights = nullptr;  ///< weights of the layer, as the file has them
   const std::byte* biases = nullptr;
   int cells = 0;
   int channels = 0;
@@ -23,9 +23,9 @@ struct Strip {
 };
 
 #if defined(__x86_64__)
-/// On a processor that has AVX2.
+/// Computes the sums on a processor that has AVX2.
 void sum_strip_avx2(const Strip& strip);
-/// On a processor that has AVX-512 F.
+/// Computes the sums on a processor that has AVX-512 F.
 void sum_strip_avx512(const Strip& strip);
 #endif
 

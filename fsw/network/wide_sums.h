@@ -1,7 +1,7 @@
 #pragma once
-// Sums of a strip in registers of any width, for source files that are compiled for wide ones. All of it has internal
-// linkage, and nothing of the standard library is called: a function that other files compile as well could be linked
-// from here, with instructions that another processor lacks.
+// Sums of a strip in registers of any width, for source files that are compiled for wide ones. All functions have
+// internal linkage, and nothing of the standard library is called: a function that other files compile as well could be
+// linked from here, with instructions that another processor lacks.
 
 #include "fsw/network/strip.h"
 
@@ -23,7 +23,8 @@ struct Register<16> {
   typedef float type __attribute__((vector_size(64)));
 };
 
-/// kCells neighbouring cells, kGroups times kLanes channels from `channel` on: that many sums stay in registers.
+/// Sums of kCells neighbouring cells, kGroups times kLanes channels from `channel` on: that many sums stay in
+/// registers.
 template <int kLanes, int kGroups, int kCells>
 inline void sum_block(const Strip& strip, int cell, int channel) {
   using Lanes = typename Register<kLanes>::type;
@@ -60,7 +61,7 @@ inline void sum_block(const Strip& strip, int cell, int channel) {
   }
 }
 
-/// As many channels from `channel` on as are whole groups; returns the next channel.
+/// Computes as many channels from `channel` on as are whole groups; returns the next channel.
 template <int kLanes, int kGroups, int kCells>
 inline int sum_channels(const Strip& strip, int channel) {
   constexpr int kWidth = kLanes * kGroups;

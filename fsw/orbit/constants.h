@@ -1,5 +1,5 @@
 #pragma once
-// Earth constants of the flight software's orbit models: those of GGM05S, its C20 as J2.
+// Earth constants of the flight software's orbit models: those of GGM05S, with its C20 as J2.
 
 namespace vbar::fsw::orbit {
 

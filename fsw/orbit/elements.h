@@ -24,17 +24,18 @@ struct QnsElements {
   double u = 0.0;     ///< MEAN argument of latitude, w + M
 };
 
-/// Mean motion, rad/s, of a Keplerian orbit with semi-major axis a (m, > 0).
+/// Returns the mean motion sqrt(mu / a^3), rad/s, of a Keplerian orbit with semi-major axis a (m, > 0).
 double mean_motion(double a);
 
-/// True argument of latitude, rad in (-pi, pi]; NaN for invalid elements (e > 0.95, not finite).
+/// Returns the true argument of latitude, rad in (-pi, pi]; NaN for invalid elements (e > 0.95, not finite).
 double true_argument_of_latitude(const QnsElements& elements);
 
-/// ECI state of osculating elements. kOutOfRange unless 0 <= e <= 0.95, a > 0; kNotFinite; kDidNotConverge (Kepler).
+/// Returns the ECI state of osculating elements. kOutOfRange unless 0 <= e <= 0.95, a > 0; kNotFinite; kDidNotConverge
+/// (Kepler).
 Result<CartesianState> cartesian_from_qns(const QnsElements& osculating);
 
-/// Osculating elements of an ECI state; raan and u in (-pi, pi]. kOutOfRange for orbits that are unbound, rectilinear,
-/// equatorial (sin i < 1e-8) or have e > 0.95; kNotFinite.
+/// Returns the osculating elements of an ECI state, raan and u in (-pi, pi]. kOutOfRange for orbits that are unbound,
+/// rectilinear, equatorial (sin i < 1e-8) or have e > 0.95; kNotFinite.
 Result<QnsElements> qns_from_cartesian(const CartesianState& state);
 
 }  // namespace vbar::fsw::orbit

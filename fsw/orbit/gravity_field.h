@@ -1,14 +1,16 @@
 #pragma once
-// Gravitational acceleration in flight software where J2 is not sufficient: degree and order 20. The harmonics beyond
-// change within five minutes of a low orbit and cause half a metre of relative error in six hours at 75 km separation.
+// Gravitational acceleration in flight software where J2 is not sufficient: degree and order 20. The harmonics of
+// higher degree change the acceleration within five minutes of a low orbit and cause half a metre of relative error in
+// six hours at 75 km separation.
 
 #include "fsw/core/types.h"
 
 namespace vbar::fsw::orbit {
 
-/// Gravitational acceleration, m/s^2 in ITRF, point mass included, at a position (m, ITRF) outside the Earth; not the
-/// centre. Cunningham (1970): each component of the gradient is a harmonic series of one degree more; Legendre
-/// functions divided by cos^m(latitude) (Pines 1973), so that the poles are not singular. About 4,000 operations.
+/// Returns the gravitational acceleration, m/s^2 in ITRF, point mass included, at a position (m, ITRF) outside the
+/// Earth; the centre is not allowed. Method: each component of the gradient is a harmonic series of one degree more
+/// (Cunningham 1970); Legendre functions are divided by cos^m(latitude), so that the poles are not singular (Pines
+/// 1973). About 4,000 operations.
 Vector3 gravity_itrf(const Vector3& position_itrf);
 
 }  // namespace vbar::fsw::orbit

@@ -21,13 +21,13 @@ Result<EccentricLatitude> solve_kepler(double ex, double ey, double u);
 
 /// Direction of the position in the plane, axis x to the ascending node, axis y 90 deg ahead.
 struct InPlane {
-  double cos_theta = 1.0;  ///< of the true argument of latitude theta = w + f
+  double cos_theta = 1.0;  ///< theta is the true argument of latitude, w + f
   double sin_theta = 0.0;
   double radius_over_a = 1.0;  ///< r/a
   double eta = 1.0;            ///< sqrt(1 - e^2)
 };
 
-/// Errors of solve_kepler.
+/// Returns the position in the plane for valid elements, otherwise an error of solve_kepler.
 Result<InPlane> in_plane(const QnsElements& elements);
 
 }  // namespace vbar::fsw::orbit

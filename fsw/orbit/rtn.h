@@ -6,7 +6,7 @@
 
 namespace vbar::fsw::orbit {
 
-/// Rotation to the RTN frame of `state` from ECI: rows R, T, N. `state` must not be rectilinear.
+/// Returns the rotation to the RTN frame of `state` from ECI: rows R, T, N. `state` must not be rectilinear.
 Matrix3 R_rtn_eci(const CartesianState& state);
 
 /// Position (m) and velocity (m/s, as seen in the rotating frame, rate h/r^2 about N) of the deputy in the chief's RTN.
@@ -17,10 +17,11 @@ struct RelativeState {
 
 RelativeState relative_state_rtn(const CartesianState& chief, const CartesianState& deputy);
 
-/// Adds an impulse given in the spacecraft's own RTN frame (m/s) to its velocity.
+/// Returns the state after an impulse, which is given in the spacecraft's own RTN frame (m/s).
 CartesianState apply_impulse_rtn(const CartesianState& state, const Vector3& dv_rtn);
 
-/// RTN state of the deputy defined by MEAN roe about the chief's MEAN elements: exact, through both osculating states.
+/// Returns the RTN state of the deputy defined by MEAN roe about the chief's MEAN elements: exact, through both
+/// osculating states.
 Result<RelativeState> relative_state_from_mean_roe(const QnsElements& chief_mean, const Vector6& mean_roe);
 
 }  // namespace vbar::fsw::orbit

@@ -23,8 +23,8 @@ enum class RouteKind : std::uint8_t {
 /// Who sends a message to whom, and where it waits.
 struct Route {
   RouteKind kind = RouteKind::kBoard;
-  std::size_t capacity = 0;  ///< of the queue, 0 without one
-  std::size_t units = 0;     ///< of a telecommand: header units 0 ... units - 1 are known; 0: not a telecommand
+  std::size_t capacity = 0;  ///< entries of the queue, 0 without one
+  std::size_t units = 0;     ///< known header units of a telecommand, 0 ... units - 1; 0: not a telecommand
 };
 
 constexpr bool has_queue(const Route& route) {
@@ -45,7 +45,7 @@ namespace route {
 constexpr Route queue(std::size_t capacity) {
   return {.kind = RouteKind::kQueue, .capacity = capacity};
 }
-/// Telecommands are rare: of each kind this number may arrive in a step. The newest of each unit is kept
+/// Telecommands are rare: four of each kind may arrive in a step. The newest of each unit is kept
 /// (fsw/gnc/telecommands.h).
 constexpr Route telecommand(std::size_t units) {
   return {.kind = RouteKind::kQueue, .capacity = 4, .units = units};
@@ -55,7 +55,7 @@ inline constexpr Route kSpecial{.kind = RouteKind::kSpecial};
 inline constexpr Route kFromFlight{.kind = RouteKind::kFromFlight};
 inline constexpr Route kBoard{.kind = RouteKind::kBoard};
 
-// Bytes of each receiver, 82 kB: twenty epochs of eighty signals.
+// Queue for the bytes of each receiver, 82 kB: twenty epochs of eighty signals.
 inline constexpr Route kReceiver = queue(64);
 inline constexpr Route kMeasurements = queue(64);
 inline constexpr Route kManeuvers = queue(32);

@@ -15,7 +15,7 @@
 
 namespace vbar::fsw::packets {
 
-/// Of every message that is a packet: its APID and its route. Undefined for any other type.
+/// APID and route of every message that is a packet. Undefined for any other type.
 template <class Message>
 struct MessageTraits;
 
@@ -36,7 +36,7 @@ constexpr void for_each_message(Visitor&& visit) {
 #undef VBAR_MESSAGE
 }
 
-/// The same for every message of telemetry.
+/// Calls the visitor for every message of telemetry.
 template <class Visitor>
 constexpr void for_each_telemetry(Visitor&& visit) {
   for_each_message([&]<class Message>() {
@@ -44,7 +44,7 @@ constexpr void for_each_telemetry(Visitor&& visit) {
   });
 }
 
-/// The same for every telecommand.
+/// Calls the visitor for every telecommand.
 template <class Visitor>
 constexpr void for_each_telecommand(Visitor&& visit) {
   for_each_message([&]<class Message>() {
@@ -63,8 +63,8 @@ struct TupleOfRoute {
 #undef VBAR_MESSAGE
 };
 
-/// False if any floating-point field, inner messages and all elements included, is a NaN or an infinity. By the bits:
-/// no compiler option for fast mathematics can make this always true.
+/// Returns false if any floating-point field, inner messages and all elements included, is a NaN or an infinity. The
+/// bits are examined, so that no compiler option for fast mathematics can make the result always true.
 template <class Value>
 [[nodiscard]] bool all_finite(const Value& value) {
   if constexpr (std::is_array_v<Value>) {
@@ -85,7 +85,7 @@ template <class Value>
   }
 }
 
-/// The message's name in vbar.lcm (also its LCM type name); null for an APID without a message.
+/// Returns the message's name in vbar.lcm (also its LCM type name); null for an APID without a message.
 [[nodiscard]] const char* message_name(Apid apid);
 
 }  // namespace vbar::fsw::packets

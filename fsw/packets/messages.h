@@ -1,5 +1,5 @@
 #pragma once
-// From an LCM message to a packet and back, with every check that hostile input requires.
+// Conversion of an LCM message to a packet and back, with every check that hostile input requires.
 //   encode(header, message, out)   -> Result<size>      header.apid is set from the message's type
 //   decode<vbar::tick>(view)       -> Result<message>   kWrongType (APID or type hash), kTooShort, kTooLong, kNotFinite
 // A payload must have exactly the size of its message. Only types listed in message_list.h are packets.

@@ -33,12 +33,12 @@ enum class Apid : std::uint16_t {
 #undef VBAR_MESSAGE
 };
 
-/// True for APIDs of telemetry, whose bytes make `telemetry_sha256`.
+/// Returns true for APIDs of telemetry, whose bytes make `telemetry_sha256`.
 constexpr bool is_telemetry(Apid apid) {
   return (static_cast<std::uint16_t>(apid) & 0x700U) == 0x500U;
 }
 
-/// True for APIDs that go to the flight software.
+/// Returns true for APIDs that go to the flight software.
 constexpr bool is_to_flight(Apid apid) {
   return static_cast<std::uint16_t>(apid) < 0x400U;
 }

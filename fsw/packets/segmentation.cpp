@@ -11,7 +11,7 @@ constexpr std::uint16_t following(std::uint16_t sequence_count) {
   return static_cast<std::uint16_t>((sequence_count + 1U) & kSequenceCountMask);
 }
 
-/// Sequence counts wrap: `a` is before `b` if it is in the half circle behind it.
+/// Sequence counts wrap: `a` is before `b` if it is in the half circle behind `b`.
 constexpr bool is_before(std::uint16_t a, std::uint16_t b) {
   const std::uint32_t behind = (static_cast<std::uint32_t>(b) - a) & kSequenceCountMask;
   return behind != 0 && behind <= kSequenceCountMask / 2U;

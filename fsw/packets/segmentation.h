@@ -1,7 +1,7 @@
 #pragma once
-// Messages longer than a packet: cut into segments that travel as packets of one APID with consecutive sequence counts
-// (CCSDS 133.0-B-2, 4.1.3.4.2 sequence flags), put together again on the other side. All segments carry the time,
-// spacecraft and unit of the message.
+// Messages longer than a packet. They are cut into segments that travel as packets of one APID with consecutive
+// sequence counts (CCSDS 133.0-B-2, 4.1.3.4.2 sequence flags), and reassembled on the other side. All segments carry
+// the time, spacecraft and unit of the message.
 
 #include <array>
 #include <cstddef>
@@ -41,9 +41,8 @@ struct Stream {
   std::uint8_t unit = 0;
 };
 
-/// Puts the segments of one stream together in memory of its owner. A segment that does not fit changes only a
-/// counter, so a message survives duplicates and segments that arrive early, as long as the missing one is sent
-/// again.
+/// Reassembles the segments of one stream in memory of its owner. A segment that does not fit changes only a counter,
+/// so a message survives duplicates and segments that arrive early, as long as the missing one is sent again.
 class SegmentAssembly {
  public:
   struct Counters {
@@ -56,16 +55,16 @@ class SegmentAssembly {
 
   SegmentAssembly(const Stream& stream, std::span<std::uint8_t> memory) : stream_(stream), memory_(memory) {}
 
-  /// Takes the next packet of the wire. When it completes a message: the message, as if it had come in one packet
-  /// (kUnsegmented, sequence count of its first segment); its payload is valid until the next call. Otherwise kNotReady
-  /// (taken, more is needed), kWrongType (of another stream), kBadSequence (duplicate or misplaced), kTooLong (message
-  /// too long).
+  /// Processes the next packet received. When it completes a message, returns the message as if it had come in one
+  /// packet (kUnsegmented, sequence count of its first segment); its payload is valid until the next call. Otherwise
+  /// kNotReady (accepted, more is needed), kWrongType (packet of another stream), kBadSequence (duplicate or
+  /// misplaced), kTooLong (message too long).
   Result<PacketView> push(const PacketView& packet);
 
   [[nodiscard]] const Counters& counters() const { return counters_; }
 
  private:
-  /// True for a packet of a message that is complete already.
+  /// Returns true for a packet of a message that is complete already.
   [[nodiscard]] bool is_past(const PacketHeader& header) const;
   Result<PacketView> begin(const PacketView& packet);
   Result<PacketView> proceed(const PacketView& packet);
@@ -91,7 +90,7 @@ class Reassembler {
   Reassembler(const Reassembler&) = delete;
   Reassembler& operator=(const Reassembler&) = delete;
 
-  /// As SegmentAssembly::push.
+  /// Processes a packet as SegmentAssembly::push does.
   Result<PacketView> push(const PacketView& packet) { return assembly_.push(packet); }
   [[nodiscard]] const SegmentAssembly::Counters& counters() const { return assembly_.counters(); }
 

@@ -19,7 +19,7 @@ struct SeenPoint {
   double weight = 1.0;
 };
 
-/// Its minima, lowest first, all points in front of the camera.
+/// Minima of the quadratic form, lowest first, all points in front of the camera.
 struct ClosedFormPoses {
   static constexpr std::size_t kMaxPoses = 4;
   std::array<TargetPose, kMaxPoses> poses{};
@@ -27,7 +27,7 @@ struct ClosedFormPoses {
   std::size_t count = 0;
 };
 
-/// No pose for fewer than three points, points on one line of sight, or values that are not finite.
+/// Returns the poses; none for fewer than three points, points on one line of sight, or values that are not finite.
 ClosedFormPoses closed_form_poses(std::span<const SeenPoint> points);
 
 }  // namespace vbar::fsw::pose

@@ -23,7 +23,7 @@ struct Cover {
   int first = 0;
   int last = -1;
 
-  /// Of pixel p, 0 to 1.
+  /// Part of pixel p that is covered, 0 to 1.
   [[nodiscard]] double share(int p) const { return smaller(p + 1.0, end) - larger(p, begin); }
 };
 
@@ -70,7 +70,7 @@ Status cut_crop(const imaging::ImageView& image, const CropRegion& region, doubl
   const imaging::ImageFrame& frame = image.frame;
   const Vector2 middle(frame.origin_x + 0.5 * (frame.width - 1), frame.origin_y + 0.5 * (frame.height - 1));
   const double off = (region.centre_px - middle).norm();
-  // Written such that a NaN is refused.
+  // The comparison also rejects a NaN.
   if (!(region.side_px >= kMinSide && region.side_px <= imaging::kMaxSide && off <= imaging::kMaxSide)) {
     return Status::kOutOfRange;
   }

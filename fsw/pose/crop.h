@@ -19,23 +19,23 @@ struct CropRegion {
   Vector2 centre_px = Vector2::Zero();
   double side_px = 0.0;
 
-  /// Position on the detector of a point of the crop, in samples of `samples` a side (128 of the crop itself, 32 of a
-  /// heatmap); an integer is the centre of a sample.
+  /// Returns the position on the detector of a point of the crop, in samples of `samples` a side (128 of the crop
+  /// itself, 32 of a heatmap); an integer is the centre of a sample.
   [[nodiscard]] Vector2 pixel_of(const Vector2& place, int samples) const {
     return centre_px + side_px * ((place.array() + 0.5) / samples - 0.5).matrix();
   }
-  /// Its inverse.
+  /// Returns the point of the crop at a position on the detector.
   [[nodiscard]] Vector2 place_of(const Vector2& pixel, int samples) const {
     return ((pixel - centre_px).array() / side_px + 0.5).matrix() * samples - Vector2::Constant(0.5);
   }
 };
 
-/// Rows from the top, samples from the left.
+/// Samples of a crop: rows from the top, samples from the left.
 using CropSamples = std::array<float, kCropSamples>;
 
 /// Crops `region` of the image. A sample is the root of the mean of the pixels it covers, weighted by the covered area,
-/// above `dark_level_dn`; the root makes photon noise uniform, and shadows count
-/// beside glints. Pixels that the image does not contain (outside it, missing tiles) are dark.
+/// above `dark_level_dn`; the root makes photon noise uniform, and shadows count beside glints. Pixels that the image
+/// does not contain (outside it, missing tiles) have no light.
 ///
 /// With `standardise` the samples are scaled to mean 0 and standard deviation 1 over the crop; in a crop that is almost
 /// uniform (below half a root of a DN) noise is not amplified. kOutOfRange unless the region is 16 to 4096 px a side,

@@ -81,7 +81,7 @@ Moments moments_of(const Likelihood& map, const Window& window) {
   return {mean + Vector2(window.left, window.top), second / sum - mean * mean.transpose()};
 }
 
-/// Of a Gaussian at `centre` in the cells `first` to `last` of one axis.
+/// Moments of a Gaussian at `centre` in the cells `first` to `last` of one axis.
 struct CutGaussian {
   double mean = 0.0;
   double variance = 0.0;

@@ -2,10 +2,10 @@
 // A keypoint from the network's heatmap: its position to a fraction of a cell, its covariance, and whether it is
 // unimodal.
 //
-// The softmax of the heatmap is the distribution of the keypoint position, widened by the Gaussian of the training. Its
-// mean and second moments are taken in a window around the highest cell, since a pedestal of a hundredth over the whole
-// heatmap would outweigh the peak. Truncation of the Gaussian by window and edge is corrected: beside the edge it
-// would bias the mean by a seventh of a cell.
+// The softmax of the heatmap is the distribution of the keypoint position, widened by the Gaussian of the training.
+// Mean and second moments are taken in a window around the highest cell, since a pedestal of a hundredth over the whole
+// heatmap would outweigh the peak. Truncation of the Gaussian by window and edge is corrected: beside the edge it would
+// bias the mean by a seventh of a cell.
 
 #include <span>
 
@@ -25,16 +25,16 @@ struct MapPeak {
   bool is_at_border = false;         ///< the highest cell is in the first or last row or column
 };
 
-/// `target_sigma_cells`: of the Gaussian of the training, above 0. All zero, at the border, if a logit is not
-/// finite.
+/// Returns the statistics of a heatmap. `target_sigma_cells` is the sigma of the Gaussian of the training, above 0. The
+/// result is all zero, at the border, if a logit is not finite.
 MapPeak read_map(std::span<const float, network::kMapCells> logits, double target_sigma_cells);
 
-/// Covariance of the position, cells^2: `covariance_scale` times the positive semidefinite part of the excess, plus
-/// `covariance_floor` for each axis.
+/// Returns the covariance of the position, cells^2: `covariance_scale` times the positive semidefinite part of the
+/// excess, plus `covariance_floor` for each axis.
 Matrix2 place_covariance(const MapPeak& peak, const network::Calibration& calibration);
 
-/// The keypoint on the detector. Unusable if the peak is at the border, lower than `least_peak`, or ambiguous:
-/// another exceeds 0.6 of it outside the window.
+/// Returns the keypoint on the detector. It is unusable if the peak is at the border, lower than `least_peak`, or
+/// ambiguous: outside the window another cell exceeds 0.6 of the peak.
 Keypoint keypoint_of(const MapPeak& peak, const network::Calibration& calibration, const CropRegion& region);
 
 }  // namespace vbar::fsw::pose

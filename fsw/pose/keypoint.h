@@ -17,7 +17,7 @@ struct Keypoint {
 
 using Keypoints = std::array<Keypoint, network::kKeypoints>;
 
-/// Positions on the target: body axes, from its centre of mass, m.
+/// Positions of the keypoints on the target: body axes, from its centre of mass, m.
 using KeypointShape = std::array<Vector3, network::kKeypoints>;
 
 }  // namespace vbar::fsw::pose

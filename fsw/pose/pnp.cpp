@@ -118,7 +118,7 @@ Result<Evaluated> polish(const Problem& problem, const TargetPose& start, const 
   return evaluated;
 }
 
-/// Of the closed form's poses of these points the one with the largest consensus.
+/// Closed form's pose of these points with the largest consensus.
 struct Guess {
   TargetPose pose;
   Verdict verdict;

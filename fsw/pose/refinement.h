@@ -1,6 +1,7 @@
 #pragma once
-// The pose that fits keypoints best on the distorted image, each weighted by its covariance: Gauss-Newton on the left
-// perturbations of a pose, damped (Levenberg 1944, Marquardt 1963), with Huber's weights (1964).
+// Pose that fits keypoints best on the distorted image, each weighted by its covariance: Gauss-Newton on the left
+// perturbations of a pose, damped (Levenberg 1944, Marquardt 1963), with Huber's weights (1964). State: rotation about
+// the camera's axes (rad) and position (m).
 
 #include <span>
 
@@ -14,7 +15,7 @@ namespace vbar::fsw::pose {
 /// A keypoint on the detector and on the target (m).
 struct Observation {
   Vector2 pixel = Vector2::Zero();
-  Matrix2 whitening = Matrix2::Identity();  ///< times a miss in px has unit covariance
+  Matrix2 whitening = Matrix2::Identity();  ///< factor that gives a residual in px unit covariance
   Vector3 body = Vector3::Zero();
 };
 
@@ -23,14 +24,15 @@ inline constexpr double kHuberSigmas = 3.0;
 
 struct RefinedPose {
   TargetPose pose;
-  double cost = 0.0;                      ///< half of the whitened squares, with Huber's weights
+  double cost = 0.0;                      ///< half of the sum of whitened squares, with Huber's weights
   Matrix6 information = Matrix6::Zero();  ///< J'J of rotation (about the camera's axes, rad) and position (m)
 };
 
-/// Predicted minus observed position of the keypoint, px. kOutOfRange if it is not in front of the camera.
+/// Returns the predicted minus observed position of the keypoint, px. kOutOfRange if it is not in front of the camera.
 Result<Vector2> miss_of(const Observation& observation, const TargetPose& pose, const imaging::CameraModel& camera);
 
-/// From a pose with all points in front of the camera, else kOutOfRange. kSingular if the points leave the pose open.
+/// Refines a pose with all points in front of the camera, else kOutOfRange. kSingular if the points leave the pose
+/// open.
 Result<RefinedPose> refine_pose(std::span<const Observation> observations, const imaging::CameraModel& camera,
                                 const TargetPose& start);
 

@@ -12,10 +12,11 @@ namespace vbar::fsw::pose {
 /// Side of a crop in apparent radii of the target: the mean of the training data.
 inline constexpr double kCropRadii = 2.3;
 
-/// Of the sphere about the origin that holds all keypoints, m.
+/// Returns the radius of the sphere about the origin that holds all keypoints, m.
 [[nodiscard]] double radius_of(const KeypointShape& shape);
 
-/// The crop for a target at a pose: the square around all its keypoints, for any attitude. kOutOfRange if behind.
+/// Returns the crop for a target at a pose: the square around all its keypoints, for any attitude. kOutOfRange if
+/// behind.
 Result<CropRegion> region_of(const Vector3& position_camera_m, const imaging::CameraModel& model,
                              const KeypointShape& shape);
 

@@ -14,7 +14,7 @@ inline Matrix3 cross_matrix(const Vector3& v) {
   return m;
 }
 
-/// exp([rotation]x), the active rotation about `rotation` by its length, rad (Rodrigues).
+/// Returns exp([rotation]x), the active rotation about `rotation` by its length, rad (Rodrigues).
 inline Matrix3 rotation_by(const Vector3& rotation) {
   const double square = rotation.squaredNorm();
   const double angle = math::sqrt(square);
@@ -29,13 +29,13 @@ inline Matrix3 rotation_by(const Vector3& rotation) {
   return Matrix3::Identity() + along * k + across * k * k;
 }
 
-/// Angle of the rotation between the two, rad, to rounding of its square.
+/// Returns the angle of the rotation between the two, rad, to rounding of its square.
 inline double angle_between(const Matrix3& a, const Matrix3& b) {
   const double chord = 0.125 * (a - b).squaredNorm();  // sin^2 of half the angle
   return 2.0 * math::asin(chord < 1.0 ? math::sqrt(chord) : 1.0);
 }
 
-/// The rotation nearest to `m` in the sum of squared elements (Davenport's q-method, Wertz 1978, 12.2.2).
+/// Returns the rotation nearest to `m` in the sum of squared elements (Davenport's q-method, Wertz 1978, 12.2.2).
 inline Result<Matrix3> nearest_rotation(const Matrix3& m) {
   Eigen::Matrix<double, 4, 4> k;
   k.topLeftCorner<3, 3>() = m + m.transpose() - m.trace() * Matrix3::Identity();

@@ -9,7 +9,7 @@ namespace {
 
 /// Limits of the difference between two poses of the same image.
 constexpr double kMaxRotation = 30.0 * math::kDegree;
-constexpr double kMaxShift = 0.2;  ///< of the range
+constexpr double kMaxShift = 0.2;  ///< largest shift over the range
 
 bool agree(const TargetPose& a, const TargetPose& b) {
   const double range = math::sqrt(b.position_camera_m.squaredNorm());

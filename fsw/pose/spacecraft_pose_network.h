@@ -20,7 +20,7 @@ namespace vbar::fsw::pose {
 struct PoseCameraSettings {
   imaging::ImageFrame frame;
   imaging::CameraModel model;
-  double dark_level_dn = 64.0;  ///< of a pixel without light
+  double dark_level_dn = 64.0;  ///< level of a pixel without light
   double noise_dn = 2.0;        ///< 1 sigma of such a pixel
   int saturation_dn = 4000;
   KeypointShape shape{};
@@ -42,25 +42,25 @@ struct PoseSighting {
   std::int32_t image = 0;
   SightingStatus status = SightingStatus::kInvalid;
   bool region_is_predicted = false;  ///< the crop follows the prediction, not the image
-  CropRegion region;                 ///< of the crop
+  CropRegion region;                 ///< region of the crop
   Keypoints keypoints{};
   std::optional<PnpSolution> pnp;
 };
 
-/// Some 2 MB, nearly all of it the network.
+/// Finds keypoints and pose of the target in an image. Nearly all of its 2 MB are the network.
 class SpacecraftPoseNetwork {
  public:
   /// Replaces the settings; loads the weights on board if that is not done yet.
   void configure(const PoseCameraSettings& settings);
 
-  /// `predicted`: pose predicted by navigation, camera axes. Without it, or if it is outside the image,
-  /// the target is detected in the image alone, in two rounds: the second crops again around the result of the first.
-  /// If the poses of the two contradict each other, neither is returned.
+  /// Processes an image. `predicted` is the pose predicted by navigation, camera axes. Without a prediction, or if it
+  /// is outside the image, the target is detected in the image alone, in two rounds: the second crops again around the
+  /// result of the first. If the poses of the two contradict each other, neither is returned.
   const PoseSighting& process(GpsTime time, std::int32_t image_number, const imaging::ImageView& image,
                               const std::optional<Vector3>& predicted_position_camera_m);
 
   [[nodiscard]] const PoseSighting& sighting() const { return sighting_; }
-  /// Its heatmaps of the last image.
+  /// Network with its heatmaps of the last image.
   [[nodiscard]] const network::KeypointNetwork& keypoint_network() const { return network_; }
 
  private:

@@ -5,14 +5,14 @@
 namespace vbar::fsw::pose {
 namespace {
 
-constexpr double kMaxSaturated = 0.4;  ///< of the pixels
+constexpr double kMaxSaturated = 0.4;  ///< largest part of saturated pixels
 constexpr int kReach = 2;              ///< blocks: a single dark block is not a gap
 constexpr int kMinLit = 5;             ///< blocks: larger than any speck
 constexpr int kMinBlocks = 12;
 constexpr int kMinSide = 6;          ///< blocks: 48 px
 constexpr int kMaxSide = 80;         ///< blocks: 640 px
 constexpr double kMaxAtEdge = 0.5;   ///< blocks at the image's edge, of the structure's longer side
-constexpr double kMinFilled = 0.12;  ///< of its rectangle
+constexpr double kMinFilled = 0.12;  ///< smallest part of its rectangle that a structure fills
 constexpr double kNoises = 6.0;
 constexpr int kMaxLevels = 8;
 constexpr double kLevelFactor = 2.5;
@@ -26,7 +26,7 @@ int larger(int a, int b) {
   return a > b ? a : b;
 }
 
-/// Of four the mean of the middle two, of fewer the minimum: a speck lies in one quarter of a block.
+/// Mean of the middle two of four values, minimum of fewer: a speck lies in one quarter of a block.
 double without_speck(const std::array<double, 4>& values, int count) {
   double minimum = values[0];
   double maximum = values[0];

@@ -1,11 +1,11 @@
 #pragma once
 // Detection of a large bright structure that may be the target, without a-priori position.
-// The method:
 //
 // The image is divided into blocks of 8 x 8 px: stars and hot pixels vanish in them, and faint light in shadow is
-// detected. Blocks well above the image's dark part, gaps of one block bridged, form structures; the largest is the
-// target unless it is too small, too large or along the image's edge, as the Earth's limb and lateral glare are. If
-// none is acceptable the level is raised: stray light with a gradient across the image then breaks up.
+// detected. Blocks well above the level of the image's darkest part form structures, in which gaps of one block are
+// bridged. The largest structure is the target unless it is too small, too large or along the image's edge, as the
+// Earth's limb and lateral glare are. If none is acceptable the level is raised: stray light with a gradient across the
+// image then breaks up.
 
 #include <array>
 #include <cstddef>
@@ -30,25 +30,25 @@ struct DetectorLevels {
   int saturation_dn = 4000;
 };
 
-/// Some 100 kB, all of it workspace.
+/// Searches an image for the target. Its 100 kB are workspace.
 class TargetFinder {
  public:
-  /// The image has width * height pixels. With invalid levels nothing is detected.
+  /// Searches an image of width * height pixels. With invalid levels nothing is detected.
   Finding find(const imaging::ImageView& image, const DetectorLevels& levels);
 
-  /// After kTarget: the square around it, a margin included.
+  /// Region of the target after kTarget: the square around it, a margin included.
   [[nodiscard]] const CropRegion& region() const { return region_; }
 
  private:
   static constexpr int kBlock = 8;  ///< px
-  /// (w / 8 + 1) (h / 8 + 1) within kMaxPixels and kMaxSide.
+  /// Largest number of blocks: (w / 8 + 1) (h / 8 + 1) within kMaxPixels and kMaxSide.
   static constexpr std::size_t kMaxBlocks = 6800;
 
-  /// Of blocks, the last ones included.
+  /// Extent of a structure in blocks, the last ones included.
   struct Structure {
     int left = 0, right = 0, top = 0, bottom = 0;
     int blocks = 0;
-    int at_edge = 0;  ///< of them, at the image's edge
+    int at_edge = 0;  ///< its blocks at the image's edge
   };
 
   void average_blocks(const imaging::ImageView& image, const DetectorLevels& levels);
@@ -66,7 +66,7 @@ class TargetFinder {
   int rows_ = 0;
   int pixels_there_ = 0;
   int saturated_ = 0;
-  bool is_large_ = false;                   ///< at the current level: a structure was larger than a speck
+  bool is_large_ = false;                   ///< at the current level, a structure was larger than a speck
   std::array<double, kMaxBlocks> light_{};  ///< above the dark level, DN
   std::array<bool, kMaxBlocks> is_open_{};  ///< above the current level and in no structure yet
   std::array<std::int16_t, kMaxBlocks> to_visit_{};

@@ -1,6 +1,8 @@
 #pragma once
-// Attitude determination: the rotation that best maps known directions to measured ones (Wahba 1965), by
-// Davenport's q-method (Wertz 1978, 12.2.2), its covariance and a test of the residuals (Shuster & Oh 1981).
+// Attitude determination: the rotation that best maps known directions to measured ones (Wahba 1965), by Davenport's
+// q-method (Wertz 1978, 12.2.2), its covariance and a test of the residuals (Shuster & Oh 1981):
+//
+//   R_camera_eci = argmin sum |d_camera,k - R d_eci,k|^2 / sigma_k^2.
 
 #include <cstddef>
 #include <span>
@@ -19,23 +21,23 @@ struct DirectionPair {
 
 struct AttitudeEstimate {
   Matrix3 R_camera_eci = Matrix3::Identity();
-  Matrix3 covariance_camera = Matrix3::Zero();  ///< of the small rotation between estimated and true camera, rad^2
+  Matrix3 covariance_camera = Matrix3::Zero();  ///< small rotation between estimated and true camera, rad^2
   double chi_square = 0.0;                      ///< sum of squared residuals over their sigma
   int degrees_of_freedom = 0;                   ///< 2 a direction, less 3
 };
 
-/// kInvalidArgument: fewer than two pairs or a sigma that is not positive; kNotFinite; kSingular: directions (nearly)
-/// on one line, or no best rotation.
+/// Returns the best attitude. kInvalidArgument: fewer than two pairs or a sigma that is not positive; kNotFinite;
+/// kSingular: directions (nearly) on one line, or no best rotation.
 Result<AttitudeEstimate> determine_attitude(std::span<const DirectionPair> pairs);
 
-/// Value that a chi-square variable of `degrees` > 0 degrees of freedom exceeds once in 10,000 (Wilson & Hilferty
-/// 1931).
+/// Returns the value that a chi-square variable of `degrees` > 0 degrees of freedom exceeds once in 10,000 (Wilson &
+/// Hilferty 1931).
 double chi_square_limit(int degrees);
 
-/// Likewise, but if the residuals are larger than the noise allows, the worst direction is removed and the others tried
-/// again, until they agree. Removed pairs are moved to the end of `pairs` (order and `tags`, one per pair, alike);
-/// `kept` is the number left. In addition, kDidNotConverge: a third would have to be removed, or fewer than
-/// three are left.
+/// Best attitude without outliers. If the residuals are larger than the noise allows, the worst direction is removed
+/// and the others are tried again, until they agree. Removed pairs are moved to the end of `pairs` (order and `tags`,
+/// one per pair, alike); `kept` is the number left. Errors are those of determine_attitude and kDidNotConverge: a third
+/// would have to be removed, or fewer than three are left.
 struct RobustAttitude {
   AttitudeEstimate estimate;
   int kept = 0;

@@ -11,18 +11,19 @@
 namespace vbar::fsw::stars {
 
 int catalogue_size();
-/// Julian year of the positions.
+/// Returns the Julian year of the positions.
 double catalogue_epoch();
 
-/// Unit vector in GCRF (to 1e-9) as seen from the solar-system barycentre: without aberration. `star` must be in range.
+/// Returns the unit vector in GCRF (to 1e-9) as seen from the solar-system barycentre: without aberration. `star` must
+/// be in range.
 Vector3 star_direction_eci(int star);
-/// Johnson V.
+/// Returns the magnitude in Johnson V.
 double star_magnitude(int star);
-/// Hipparcos number; 0 for the few stars without one.
+/// Returns the Hipparcos number; 0 for the few stars without one.
 int star_hipparcos(int star);
 
-/// Stars within `radius` (rad, at most 0.5) of a unit vector, written to `found` up to its size; returns how many were
-/// written. kOutOfRange for a larger radius, kNotFinite.
+/// Writes the stars within `radius` (rad, at most 0.5) of a unit vector to `found` up to its size; returns their
+/// number. kOutOfRange for a larger radius, kNotFinite.
 Result<int> stars_in_cone(const Vector3& axis_eci, double radius, std::span<int> found);
 
 }  // namespace vbar::fsw::stars

@@ -30,13 +30,13 @@ struct StarMatch {
 /// Attitude from identified stars.
 struct AttitudeFix {
   Matrix3 R_camera_eci = Matrix3::Identity();
-  Matrix3 covariance_camera = Matrix3::Zero();  ///< of the small rotation between estimated and true camera, rad^2
-  double sigma_rad = 0.0;                       ///< of the boresight's direction, worst axis
-  double sigma_roll_rad = 0.0;                  ///< about the boresight
-  double chi_square = 0.0;                      ///< of the residuals
+  Matrix3 covariance_camera = Matrix3::Zero();  ///< small rotation between estimated and true camera, rad^2
+  double sigma_rad = 0.0;                       ///< 1 sigma of the boresight's direction, worst axis
+  double sigma_roll_rad = 0.0;                  ///< 1 sigma about the boresight
+  double chi_square = 0.0;                      ///< sum of squared residuals over their sigma
   double log_chance = 0.0;                      ///< ln of the expected number of such agreements by chance
   double magnitude_offset = 0.0;                ///< median of observed less catalogue magnitude
-  int hypotheses = 0;                           ///< tried up to this one
+  int hypotheses = 0;                           ///< number of hypotheses tried up to this one
   int matches = 0;                              ///< number of valid elements of `match`
   std::array<StarMatch, imaging::kMaxObjects> match{};
 };

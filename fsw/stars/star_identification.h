@@ -1,8 +1,7 @@
 #pragma once
-// Star identification and attitude of the camera: without prior attitude (lost in space) or near
-// a predicted attitude (tracking). Both generate hypotheses that verification.h accepts or rejects, so that the same
-// confidence holds for both: false objects may be many and bright, and an identification that could be due to chance is
-// refused.
+// Star identification and attitude of the camera: without prior attitude (lost in space) or near a predicted attitude
+// (tracking). Both generate attitude hypotheses that verification.h accepts or rejects, so that the same confidence
+// holds for both: false objects may be many and bright, and an identification that could be due to chance is rejected.
 
 #include <array>
 #include <span>
@@ -21,23 +20,24 @@ inline constexpr std::size_t kMaxPatternObjects = 48;
 /// Largest tolerance of a predicted attitude, rad (1 degree).
 inline constexpr double kLargestTolerance = 0.0175;
 
-/// 95 kB with all workspace; between calls only the last fix is kept.
+/// Identifies the stars of an image. Its 95 kB are mostly workspace: between calls only the last fix is kept.
 class StarIdentifier {
  public:
-  /// Attitude of a camera with unknown pointing. `velocity_over_c_eci`: the observer's, barycentric, for aberration.
-  /// kOk: fix() holds the attitude. kDidNotConverge: no reliable solution. kTooLong: more than kMaxObjects;
-  /// kNotFinite; kInvalidArgument: a sigma or the field's radius is not positive.
+  /// Determines the attitude of a camera with unknown pointing. `velocity_over_c_eci` is the observer's barycentric
+  /// velocity over the speed of light, for aberration. kOk: fix() holds the attitude. kDidNotConverge: no reliable
+  /// solution. kTooLong: more than kMaxObjects; kNotFinite; kInvalidArgument: a sigma or the field's radius is not
+  /// positive.
   /// Two stars of the catalogue's pair table with the separation of two objects yield an attitude (Black 1974); the
   /// other objects confirm or reject it.
   Status lost_in_space(std::span<const ObservedStar> objects, const Field& field, const Vector3& velocity_over_c_eci);
 
-  /// Attitude near a predicted one, within a rotation of `tolerance_rad` about any axis. As above; and
-  /// kOutOfRange: tolerance above kLargestTolerance. Each object votes for the shifts that would map a star of the
-  /// neighbourhood to it; the shifts with most votes are verified.
+  /// Determines the attitude near a predicted one, within a rotation of `tolerance_rad` about any axis. Each object
+  /// votes for the shifts that would map a star of the neighbourhood to it; the shifts with most votes are verified.
+  /// Errors are those of lost_in_space, and kOutOfRange: tolerance above kLargestTolerance.
   Status track(std::span<const ObservedStar> objects, const Field& field, const Matrix3& predicted_R_camera_eci,
                double tolerance_rad, const Vector3& velocity_over_c_eci);
 
-  /// Of the last call that returned kOk.
+  /// Attitude of the last call that returned kOk.
   [[nodiscard]] const AttitudeFix& fix() const { return fix_; }
 
  private:
@@ -82,7 +82,7 @@ class StarIdentifier {
   std::array<DirectionPair, imaging::kMaxObjects> seed_pair_{};
 };
 
-/// Checks of the input common to both.
+/// Checks the input common to both methods.
 Status check_objects(std::span<const ObservedStar> objects, const Field& field, const Vector3& velocity_over_c_eci);
 
 }  // namespace vbar::fsw::stars

@@ -9,7 +9,7 @@ namespace vbar::fsw::stars {
 /// Tolerance of observed magnitudes. Bright stars saturate a detector, so that an object may be fainter by any amount
 /// than a star brighter than kSaturating.
 struct MagnitudeGate {
-  double offset = 0.0;  ///< of observed magnitudes
+  double offset = 0.0;  ///< median offset of observed magnitudes
   double width = 2.0;
 
   [[nodiscard]] bool admits(double observed, double catalogue) const {
@@ -19,19 +19,19 @@ struct MagnitudeGate {
   }
 };
 
-/// False: there is no star within kCellMargin of a direction.
+/// Returns false if there is no star within kCellMargin of a direction.
 inline bool is_occupied(const Vector3& direction_eci) {
   const int cell = cell_of(direction_eci.x(), direction_eci.y(), direction_eci.z(), kOccupancyEdge);
   return (vbar_star_tables.occupied[static_cast<std::size_t>(cell / 32)] >> (cell % 32) & 1U) != 0;
 }
 
 struct Neighbour {
-  int star = -1;  ///< none
+  int star = -1;  ///< -1: none
   double squared_distance = 0.0;
 };
 
-/// The star nearest to a direction (unit vector, without aberration), not farther than `tolerance` (rad, at most
-/// kCellMargin), whose magnitude the gate admits.
+/// Returns the star nearest to a direction (unit vector, without aberration), not farther than `tolerance` (rad, at
+/// most kCellMargin), whose magnitude the gate admits.
 inline Neighbour nearest_star(const Vector3& direction_eci, double tolerance, double magnitude,
                               const MagnitudeGate& gate) {
   Neighbour nearest{-1, tolerance * tolerance};
@@ -47,8 +47,8 @@ inline Neighbour nearest_star(const Vector3& direction_eci, double tolerance, do
   return nearest;
 }
 
-/// Direction in which a star is seen by an observer moving at velocity / c (first order; 0.003 arcsec at Earth's
-/// speed), and back.
+/// Returns the direction in which a star is seen by an observer moving at velocity / c (first order; 0.003 arcsec at
+/// Earth's speed). The next function is its inverse.
 inline Vector3 with_aberration(const Vector3& direction, const Vector3& velocity_over_c) {
   return (direction + velocity_over_c) * (1.0 - direction.dot(velocity_over_c));
 }

@@ -16,10 +16,10 @@ struct StarTables {
   /// brightest first.
   std::array<std::array<std::int32_t, 3>, kTableStars> direction;
   std::array<std::int32_t, kTableStars> hipparcos;  ///< 0: has no number
-  /// Entries of fine cell c: cell_star[first_of_cell[c]] to before cell_star[first_of_cell[c + 1]], brightest first.
+  /// Stars of fine cell c: cell_star[first_of_cell[c]] to before cell_star[first_of_cell[c + 1]], brightest first.
   std::array<std::uint32_t, kFineCells + 1> first_of_cell;
   std::array<std::uint32_t, kOccupancyWords> occupied;  ///< one bit per cell of occupancy, from the lowest
-  /// Pairs of chord step s, counted from kFirstChord: likewise.
+  /// Pairs of chord step s, counted from kFirstChord: pair[first_of_chord[s]] to before pair[first_of_chord[s + 1]].
   std::array<std::uint32_t, kChordSteps + 1> first_of_chord;
   std::array<std::array<std::uint16_t, 2>, kTablePairs> pair;  ///< the brighter star first
   std::array<std::int16_t, kTableStars> millimagnitude;

@@ -6,21 +6,22 @@
 
 namespace vbar::fsw::stars {
 
-/// The sky as the six faces of a cube around the observer, each face n x n cells. Fine cells answer "which star is
-/// here?", coarse ones "which stars are near here?".
+/// Number of cells along the edge of a face. The sky is divided into the six faces of a cube around the observer, each
+/// face into n x n cells. Fine cells answer "which star is here?", coarse ones "which stars are near here?".
 inline constexpr int kFineEdge = 128;
 inline constexpr int kCoarseEdge = 16;
-/// The finest only contain whether there is a star at all: a bit each, by which most searches end without one.
+/// Number of the finest cells along an edge. Each only states whether it contains a star, in one bit, by which most
+/// searches end.
 inline constexpr int kOccupancyEdge = 512;
 inline constexpr int kOccupancyWords = 6 * kOccupancyEdge * kOccupancyEdge / 32;
 inline constexpr int kFineCells = 6 * kFineEdge * kFineEdge;
 inline constexpr int kCoarseCells = 6 * kCoarseEdge * kCoarseEdge;
-/// No point of a coarse cell is farther from its middle, rad: half the diagonal of a cell in the middle of a face,
-/// where cells are largest (0.0882), rounded up.
+/// Largest distance of a point of a coarse cell from the cell's middle, rad: half the diagonal of a cell in the middle
+/// of a face, where cells are largest (0.0882), rounded up.
 inline constexpr double kCoarseRadius = 0.0890;
 
-/// A fine cell lists every star that lies in it or within this of it, rad (100 arcsec): one cell is sufficient to find
-/// the stars within this of a direction.
+/// Margin of fine cells, rad (100 arcsec). A fine cell lists every star within this distance of the cell, so that one
+/// cell is sufficient to find the stars within this distance of a direction.
 inline constexpr double kCellMargin = 4.8481e-4;
 
 /// Directions are integers: components times 2^30.
@@ -32,7 +33,8 @@ inline constexpr int kFirstChord = 3431;
 inline constexpr int kLastChord = 18287;
 inline constexpr int kChordSteps = kLastChord - kFirstChord + 1;
 
-/// Number of the cell that a direction (of any length but zero) points to, for `edge` cells along each edge of a face.
+/// Returns the number of the cell that a direction (of any length but zero) points to, for `edge` cells along each edge
+/// of a face.
 constexpr int cell_of(double x, double y, double z, int edge) {
   const double ax = x < 0.0 ? -x : x;
   const double ay = y < 0.0 ? -y : y;

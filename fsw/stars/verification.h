@@ -1,7 +1,7 @@
 #pragma once
 // Verification of an attitude hypothesis. The catalogue is compared with the image: if more objects have a star at
-// their position than chance can explain, it is accepted. False objects agree by chance with the catalogue density
-// times the tolerance area; the probability of the number of agreements is bounded by Chernoff's inequality.
+// their position than chance can explain, the hypothesis is accepted. False objects agree by chance with the catalogue
+// density times the tolerance area; the probability of the number of agreements is bounded by Chernoff's inequality.
 
 #include <array>
 #include <span>
@@ -17,12 +17,12 @@ namespace vbar::fsw::stars {
 struct Supposition {
   Matrix3 R_camera_eci = Matrix3::Identity();
   double sigma_rad = 0.0;    ///< expected error, anywhere in the image
-  int agreements_spent = 0;  ///< matches assumed in making it: two for a pair, one for an offset
+  int agreements_spent = 0;  ///< matches assumed by the hypothesis itself: two for a pair, one for an offset
   int hypotheses = 1;        ///< tried so far for this image
 };
 
-/// ln of a bound on the probability that `expected` (mean) chance agreements become `count` or more (Chernoff 1952); 0
-/// where count <= expected.
+/// Returns ln of a bound on the probability that `expected` (mean) chance agreements become `count` or more (Chernoff
+/// 1952); 0 where count <= expected.
 double log_chance_of(int count, double expected);
 
 /// An identification is accepted if chance would produce fewer than this many of its kind in an image.
@@ -44,7 +44,7 @@ class Verification {
   double star_density(const Vector3& centre_eci, double radius);
 
   std::size_t count_ = 0;
-  double tolerance_area_ = 0.0;  ///< of all objects tried, sr
+  double tolerance_area_ = 0.0;  ///< tolerance area of all objects tried, sr
   std::array<int, imaging::kMaxObjects> object_{};
   std::array<Neighbour, imaging::kMaxObjects> star_{};
   std::array<DirectionPair, imaging::kMaxObjects> pair_{};

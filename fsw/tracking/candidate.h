@@ -1,6 +1,5 @@
 #pragma once
-// Inputs of target tracking at an image: the objects that are not identified stars, and the servicer's own
-// burns.
+// Inputs of target tracking at an image: the objects that are not identified stars, and the servicer's own burns.
 
 #include <cstddef>
 

@@ -13,10 +13,10 @@
 namespace vbar::fsw::tracking {
 
 struct HotPixelSettings {
-  double min_sharpness = 0.5;  ///< share of its light in one pixel
-  double place_px = 0.6;       ///< its centroid stays within this of the first, each axis
-  int sightings = 4;           ///< number that makes it known
-  int forget_after = 60;       ///< images without it
+  double min_sharpness = 0.5;  ///< smallest share of its light in one pixel
+  double place_px = 0.6;       ///< largest distance of its centroid from the first one, each axis
+  int sightings = 4;           ///< number of sightings that makes it a known hot pixel
+  int forget_after = 60;       ///< number of images without a sighting until it is forgotten
 };
 
 class HotPixelMap {
@@ -28,12 +28,12 @@ class HotPixelMap {
   /// Starts an image: all its objects that are not stars are then passed to see().
   void begin_image() { ++image_; }
 
-  /// True if the object is a known hot pixel, seen often enough before and sharp. Otherwise learns it if it is sharp;
-  /// an entry is free if its pixel was not seen for `forget_after` images, or else the one unseen for longest of those
-  /// not yet known.
+  /// Returns true if the object is a known hot pixel, seen often enough before and sharp. Otherwise learns it if it is
+  /// sharp. An entry is free if its pixel was not seen for `forget_after` images; without a free entry, the one that is
+  /// unseen for longest among those not yet known is replaced.
   bool see(const imaging::DetectedObject& object);
 
-  /// How often a sharp object was seen at this position, this image included; 0 if the object is not sharp.
+  /// Returns how often a sharp object was seen at this position, this image included; 0 if the object is not sharp.
   [[nodiscard]] int sightings_of(const imaging::DetectedObject& object) const;
 
   [[nodiscard]] std::size_t known() const;

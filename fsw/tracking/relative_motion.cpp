@@ -65,7 +65,7 @@ RelativeMotion unknown_motion(const MotionSettings& settings) {
 
 bool propagate(RelativeMotion& motion, const ServicerView& view, double dt, const MotionSettings& settings) {
   const double rate = view.drift_rate * dt;
-  const double stretch = 1.0 - rate * motion.shape[0];  // of dlambda
+  const double stretch = 1.0 - rate * motion.shape[0];  // factor of dlambda
   if (!(stretch > kMinStretch && stretch < kMaxStretch)) return false;
   const double inverse = 1.0 / stretch;
   motion.shape *= inverse;
@@ -145,7 +145,7 @@ void update(RelativeMotion& motion, const Innovation& innovation) {
 SlopeState slope_state(const RelativeMotion& motion, const ServicerView& view, double bend, double bend_rate) {
   const Regressors rows = regressors(view.latitude);
   const Vector5& shape = motion.shape;
-  const double drift = view.drift_rate;  // of s: ds/dt = drift s0 s
+  const double drift = view.drift_rate;  // drift of s: ds/dt = drift s0 s
   const double inverse = 1.0 / limited(1.0 + rows.along.dot(shape));
   const double along = rows.along.dot(shape);
   const double along_rate = view.latitude_rate * rows.along_du.dot(shape) + drift * shape[0] * along;

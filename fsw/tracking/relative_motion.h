@@ -19,10 +19,10 @@ namespace vbar::fsw::tracking {
 using Matrix25 = Eigen::Matrix<double, 2, 5>;
 
 struct MotionSettings {
-  double shape_sigma = 0.08;     ///< of each element of s before the first bearing
+  double shape_sigma = 0.08;     ///< 1 sigma of each element of s before the first bearing
   double model_sigma = 5e-5;     ///< rad, added to each bearing: modelling errors from image to image
-  double drift_sigma = 1e-4;     ///< of each element of s after an orbit: random walk
-  double drift_fraction = 3e-3;  ///< likewise as a part of |s|: J2 rotates the relative eccentricity and inclination
+  double drift_sigma = 1e-4;     ///< 1 sigma of each element of s after an orbit: random walk
+  double drift_fraction = 3e-3;  ///< its part proportional to |s|: J2 rotates the relative eccentricity and inclination
 };
 
 struct RelativeMotion {
@@ -36,37 +36,40 @@ struct Innovation {
   Matrix2 covariance = Matrix2::Identity();
   Matrix25 jacobian = Matrix25::Zero();
   double distance = 0.0;     ///< residual' covariance^-1 residual
-  double determinant = 1.0;  ///< of the covariance
+  double determinant = 1.0;  ///< determinant of the covariance
 };
 
-/// Measurement of a candidate.
+/// Slopes of a candidate, as a measurement.
 struct SlopeMeasurement {
   Vector2 slopes = Vector2::Zero();
   Vector2 variance = Vector2::Zero();
 };
 
-/// Bearing of a unit vector with 1 sigma (rad) of each axis. Errors of slopes_of; kOutOfRange for sigma <= 0.
+/// Returns the measurement of a unit vector with 1 sigma (rad) of each axis. Errors are those of slopes_of; kOutOfRange
+/// for sigma <= 0.
 Result<SlopeMeasurement> slope_measurement(const Vector3& direction_rtn, double sigma, const MotionSettings& settings);
 
-/// Only the size of the elements is known.
+/// Returns the state before the first bearing: only the size of the elements is known.
 RelativeMotion unknown_motion(const MotionSettings& settings);
 
-/// Propagation by `dt` seconds. False if the target would pass the servicer: the state is then invalid.
+/// Propagates by `dt` seconds. Returns false if the target would pass the servicer: the state is then invalid.
 bool propagate(RelativeMotion& motion, const ServicerView& view, double dt, const MotionSettings& settings);
 
-/// An own burn at argument of latitude `latitude` (rad). Without `along_track_m` (0) the elements are almost reset.
+/// Applies an own burn at argument of latitude `latitude` (rad). Without `along_track_m` (0) the elements are almost
+/// reset.
 void apply_burn(RelativeMotion& motion, const OwnBurn& burn, double latitude, const ServicerView& view,
                 const Prediction& prediction, const MotionSettings& settings);
 
-/// `bend`: -T / (2 a).
+/// Returns the innovation of a measurement. `bend` is -T / (2 a).
 Innovation innovation_of(const RelativeMotion& motion, const ServicerView& view, double bend,
                          const SlopeMeasurement& measurement);
 
-/// Kalman update.
+/// Updates state and covariance by the Kalman equations.
 void update(RelativeMotion& motion, const Innovation& innovation);
 
-/// Predicted slopes and rates with covariance, as in a prediction (in axes that rotate about N only). `bend_rate`:
-/// of `bend`, 1/s. They represent all five elements of s, so that they discriminate between orbits at any time.
+/// Predicted slopes and rates with covariance, as in a prediction (in axes that rotate about N only). `bend_rate` is
+/// the rate of `bend`, 1/s. They represent all five elements of s, so that they discriminate between orbits at any
+/// time.
 struct SlopeState {
   Vector5 slopes = Vector5::Zero();
   Matrix5 covariance = Matrix5::Zero();
@@ -83,7 +86,7 @@ struct SlopeFloors {
 /// Normal distribution of a difference of slopes and rates. Very large if its covariance is not regular.
 struct SlopeDistance {
   double square = 0.0;           ///< difference' (covariance + floors)^-1 difference
-  double log_determinant = 0.0;  ///< of covariance + floors, except for a constant
+  double log_determinant = 0.0;  ///< ln of the determinant of covariance + floors, except for a constant
 };
 SlopeDistance slope_distance(const Vector5& difference, const Matrix5& covariance, const SlopeFloors& floors);
 

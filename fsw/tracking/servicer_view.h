@@ -11,9 +11,9 @@ namespace vbar::fsw::tracking {
 struct ServicerView {
   double latitude = 0.0;       ///< true argument of latitude, rad
   double latitude_rate = 0.0;  ///< rad/s
-  double mean_motion = 0.0;    ///< rad/s, of the osculating orbit
-  /// Of a relative semi-major axis, with J2: d(dlambda)/dt = -drift_rate da, 1/s. The osculating mean motion and a
-  /// drift without J2 differ from it by 0.2 % and 0.3 %.
+  double mean_motion = 0.0;    ///< mean motion of the osculating orbit, rad/s
+  /// Drift rate of a relative semi-major axis, with J2: d(dlambda)/dt = -drift_rate da, 1/s. The osculating mean motion
+  /// and a drift without J2 differ from it by 0.2 % and 0.3 %.
   double drift_rate = 0.0;
   double semi_major_axis = 0.0;  ///< m, osculating
   /// Slope of the servicer's own path, v_R / v_T: the direction of a target that follows or leads on the same orbit.
@@ -27,12 +27,12 @@ struct ServicerView {
   double plane_rotation_rate = 0.0;
 };
 
-/// Of the servicer's osculating ECI state. Accelerations are those of point mass and J2. Errors of
-/// orbit::qns_from_cartesian (unbound, equatorial, not finite) and orbit::mean_from_osculating.
+/// Returns the quantities of the servicer's osculating ECI state. Accelerations are those of point mass and J2. Errors
+/// are those of orbit::qns_from_cartesian (unbound, equatorial, not finite) and orbit::mean_from_osculating.
 Result<ServicerView> servicer_view(const orbit::CartesianState& servicer);
 
-/// Slopes y, z of a direction in RTN, not necessarily of unit length. kOutOfRange if it is more than 60 degrees from
-/// the T axis, either way; kNotFinite.
+/// Returns the slopes y, z of a direction in RTN, not necessarily of unit length. kOutOfRange if it is more than 60
+/// degrees from the T axis, in either direction; kNotFinite.
 Result<Vector2> slopes_of(const Vector3& direction_rtn);
 
 }  // namespace vbar::fsw::tracking

@@ -12,7 +12,7 @@ constexpr double kAlone = 99.0;
 constexpr int kRivalHits = 3;
 constexpr int kOwnObjects = 2;
 constexpr int kDeposeAfter = 3;
-constexpr SlopeFloors kRegular{1e-6, 1e-8};  // of a covariance
+constexpr SlopeFloors kRegular{1e-6, 1e-8};  // keep a covariance regular
 
 }  // namespace
 

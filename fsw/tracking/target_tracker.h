@@ -27,19 +27,19 @@ struct TrackerSettings {
   double field_sr = 0.0113;        ///< solid angle of the search for candidates: 4.8 by 7.7 degrees
   double surroundings = 0.03;      ///< rad about the predicted bearing in which other satellites are tracked as well
   double association_gate = 13.8;  ///< chi-square, 2 degrees of freedom: 99.9 %
-  double prediction_gate = 18.4;   ///< likewise about the predicted bearing: 99.99 %
+  double prediction_gate = 18.4;   ///< the same about the predicted bearing: 99.99 %
   double identity_gate = 25.7;     ///< chi-square, 5 degrees of freedom: 99.99 %
   double identity_margin = 6.0;    ///< log-likelihood by which the target must exceed all others
   double slope_floor = 1.5e-4;     ///< 1-sigma floor of the errors of predicted bearings, 30 arcsec
-  double shape_floor = 1.5e-4;     ///< likewise of each element of a relative orbit (relative_motion.h)
-  double certainty = 0.99;         ///< of the association in an image
-  double magnitude_sigma = 1.5;    ///< of a tumbling target from image to image
+  double shape_floor = 1.5e-4;     ///< 1-sigma floor of each element of a relative orbit (relative_motion.h)
+  double certainty = 0.99;         ///< required certainty of the association in an image
+  double magnitude_sigma = 1.5;    ///< 1-sigma variation of a tumbling target from image to image
   double sharp_object_loss = 2.3;  ///< log-likelihood: the target's light falls on more than one pixel
-  int confirm_hits = 5;            ///< M
-  int confirm_images = 7;          ///< of N
+  int confirm_hits = 5;            ///< number M of detections that establishes a track...
+  int confirm_images = 7;          ///< ...among N images
   int gap_images = 5;              ///< a gap: number of images without detection
   int hits_after_gap = 3;          ///< detections needed again after a gap
-  int give_up_images = 15;         ///< images without detection, though expected, until given up
+  int give_up_images = 15;         ///< images without detection, though expected, until a track is given up
 };
 
 struct TrackerInput {
@@ -48,13 +48,13 @@ struct TrackerInput {
   std::span<const Candidate> candidates;  ///< at most kMaxCandidates
   std::span<const OwnBurn> burns;         ///< since the last image, in order of time
   std::optional<Prediction> prediction;
-  double detection_probability = 0.9;  ///< that the target, if in the field, is among the candidates: 0 in eclipse
+  double detection_probability = 0.9;  ///< that the target, if in the field, is a candidate: 0 in eclipse
 };
 
 enum class TrackerState : std::uint8_t {
   kSearching,  ///< no track is identified as the target
-  kTracking,   ///< one is
-  kCoasting,   ///< one is, but it is not detected in this image, or not for certain
+  kTracking,   ///< one track is identified as the target
+  kCoasting,   ///< one track is, but it is not detected in this image, or not for certain
   kAmbiguous,  ///< two or more tracks may be the target
 };
 
@@ -64,8 +64,8 @@ struct TrackerOutput {
   bool confirmed = false;  ///< `candidate` is the target: never true without one
   int hypotheses = 0;
   int tracks = 0;
-  int hot_pixels = 0;            ///< known
-  double score_margin = 0.0;     ///< by which the best track's identity exceeds the next one's; large if alone
+  int hot_pixels = 0;            ///< number of known hot pixels
+  double score_margin = 0.0;     ///< excess of the best track's identity over the next one's; large if alone
   double residual_sigmas = 0.0;  ///< root mean square of the target's recent residuals over their standard deviation
 };
 
@@ -74,12 +74,13 @@ class TargetTracker {
   explicit TargetTracker(const TrackerSettings& settings = {})
       : settings_(settings), hot_pixels_(settings.hot_pixels) {}
 
-  /// Processes an image. kInvalidArgument: not after the last image, or a burn after it or before that; kTooLong: more
-  /// candidates than kMaxCandidates; kNotFinite, kOutOfRange: of state, candidates (sigma <= 0), burns, prediction or
-  /// probability. Nothing is changed then. Candidates more than 60 degrees from the T axis are ignored.
+  /// Processes an image. kInvalidArgument: the image is not after the last one, or a burn is after it or before the
+  /// last one; kTooLong: more candidates than kMaxCandidates; kNotFinite, kOutOfRange: invalid state, candidates (sigma
+  /// <= 0), burns, prediction or probability. After an error nothing is changed. Candidates more than 60 degrees from
+  /// the T axis are ignored.
   Result<TrackerOutput> step(const TrackerInput& input);
 
-  /// Whether the object is a known hot pixel, for telemetry.
+  /// Hot pixels learned so far, for telemetry.
   [[nodiscard]] const HotPixelMap& hot_pixels() const { return hot_pixels_; }
 
  private:
@@ -124,7 +125,7 @@ class TargetTracker {
   bool has_image_ = false;
   GpsTime time_;
   std::uint32_t next_track_ = 1;
-  std::uint32_t target_track_ = 0;  ///< 0: none
+  std::uint32_t target_track_ = 0;  ///< images in which the target was expected, since the tracks were reset
   int images_watched_ = 0;          ///< in which the target was expected, since the last reset of the tracks
   int deposing_images_ = 0;
   bool ambiguous_ = false;
@@ -133,7 +134,7 @@ class TargetTracker {
   std::size_t count_ = 0;
   std::array<Hypothesis, kMaxHypotheses> hypotheses_{};
 
-  // Of the current image
+  // Data of the current image
   struct Workspace {
     ServicerView view;
     Prediction prediction;
@@ -143,7 +144,7 @@ class TargetTracker {
     double bend_rate = 0.0;
     double detection_probability = 0.0;
     double log_miss = 0.0;
-    double log_density = 0.0;  ///< of false detections, 1/sr
+    double log_density = 0.0;  ///< ln of the density of false detections, 1/sr
     std::size_t eligible_count = 0;
     std::array<Eligible, kMaxCandidates> eligible{};
     std::size_t branch_count = 0;

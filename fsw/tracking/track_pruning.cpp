@@ -61,7 +61,7 @@ void TargetTracker::prune() {
   merge_tracks();
 }
 
-// Of two hypotheses of a track that share the last images the better stays.
+// Two hypotheses of a track that share the last images: the better one stays.
 void TargetTracker::merge_accounts() {
   work_.erased.fill(false);
   for (std::size_t a = 0; a < count_; ++a) {
@@ -75,7 +75,7 @@ void TargetTracker::merge_accounts() {
   erase_marked();
 }
 
-// Of two tracks that have become equal the target's stays, else an established one, else the better: the other is a
+// Two tracks that have become equal: the target's stays, else an established one, else the better one. The other is a
 // duplicate that is maintained by the first one's objects.
 void TargetTracker::merge_tracks() {
   std::array<std::size_t, kMaxHypotheses> best{};

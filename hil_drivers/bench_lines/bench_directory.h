@@ -1,5 +1,5 @@
 #pragma once
-// The directory in which an emulated bench makes its lines, and the file that lists their addresses.
+// Directory in which an emulator makes its lines, and the file that lists their addresses.
 
 #include <filesystem>
 #include <string>
@@ -17,11 +17,11 @@ class BenchDirectory {
   BenchDirectory(const BenchDirectory&) = delete;
   BenchDirectory& operator=(const BenchDirectory&) = delete;
 
-  /// Absolute.
+  /// Absolute path of the directory.
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
-  /// Writes addresses.json, which appears only when it is complete: whoever waits for it may read it at once. Throws
-  /// std::runtime_error.
+  /// Writes addresses.json, which appears only when it is complete: a program that waits for the file may read it at
+  /// once. Throws std::runtime_error.
   void write_addresses(const std::string& json) const;
 
  private:

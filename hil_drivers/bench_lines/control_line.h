@@ -1,6 +1,6 @@
 #pragma once
-// The control line of an emulated bench: a Unix stream socket. Each line that comes in is one command; the answer is
-// one line: what the handler answers, at once or later, or {"error": "..."}.
+// Control line of an emulator: a Unix stream socket. Each line received is one command. The answer is one line, which
+// the handler gives at once or later, or {"error": "..."}.
 
 #include <filesystem>
 #include <functional>
@@ -11,15 +11,15 @@
 
 namespace vbar::bench_lines {
 
-/// Without effect once the client has gone.
+/// Sends the answer; without effect once the client has gone.
 using Answer = std::function<void(const std::string& line)>;
 
 class ControlLine {
  public:
-  /// What it throws becomes the error of the answer.
+  /// Executes a command. An exception becomes the error of the answer.
   using Handler = std::function<void(const std::string& line, const Answer& answer)>;
 
-  /// Throws std::runtime_error if the socket cannot be made.
+  /// Opens the socket. Throws std::runtime_error if it cannot be made.
   ControlLine(boost::asio::io_context& context, const std::filesystem::path& path, Handler handler);
   ~ControlLine();
   ControlLine(const ControlLine&) = delete;

@@ -1,5 +1,5 @@
 #pragma once
-// The faults of an emulated bench that have taken effect, one line of JSON each.
+// Faults of an emulator that have taken effect, one line of JSON each.
 
 #include <filesystem>
 #include <fstream>
@@ -8,12 +8,12 @@
 
 namespace vbar::bench_lines {
 
-/// Gets the line of a fault that has taken effect.
+/// Receives the line of a fault that has taken effect.
 using Acknowledge = std::function<void(const std::string& line)>;
 
 class FaultLog {
  public:
-  /// Throws std::runtime_error if the file cannot be made.
+  /// Opens the file. Throws std::runtime_error if it cannot be made.
   explicit FaultLog(const std::filesystem::path& file);
 
   /// Writes the line at once, since the program may be killed, then calls `acknowledge`, if there is one.

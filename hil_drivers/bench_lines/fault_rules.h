@@ -1,6 +1,5 @@
 #pragma once
-// What the lists of faults of emulated benches have in common: a table of rules with `name` and `kind`, found by
-// either.
+// Rules of an emulator's faults: a table with `name` and `kind` of each, searched by either.
 
 #include <string>
 #include <string_view>
@@ -10,7 +9,7 @@
 
 namespace vbar::bench_lines {
 
-/// The rule that the key `kind` of a table names. Throws a MissionError with the names that exist.
+/// Returns the rule that the key `kind` of a table names. Throws a MissionError with the names that exist.
 template <typename Rules>
 const auto& read_fault_rule(const mission::TableReader& section, const Rules& rules) {
   const std::string name = section.text("kind");
@@ -21,7 +20,7 @@ const auto& read_fault_rule(const mission::TableReader& section, const Rules& ru
   section.refuse_value("kind", mission::listing_of(names));
 }
 
-/// The rule of a kind; every kind has one.
+/// Returns the rule of a kind; every kind has one.
 template <typename Rules, typename Kind>
 constexpr const auto& fault_rule_of(const Rules& rules, Kind kind) {
   for (const auto& rule : rules)

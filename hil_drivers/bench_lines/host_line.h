@@ -1,7 +1,7 @@
 #pragma once
-// A serial line of an emulated receiver as a host sees it: a pseudo-terminal behind a name of its own in the bench's
-// directory. Bytes for the host are never lost while the line is plugged in: what the terminal does not take now is
-// kept in order.
+// Serial line of an emulated receiver as a host sees it: a pseudo-terminal behind a name in the emulator's directory.
+// Bytes for the host are never lost while the line is plugged in: bytes that the terminal does not accept now are kept
+// in order.
 
 #include <cstdint>
 #include <filesystem>
@@ -20,7 +20,7 @@ namespace vbar::bench_lines {
 
 class HostLine {
  public:
-  /// Bytes that the host has written, and the baud rate that its end is set to.
+  /// Receives the bytes that the host has written, and the baud rate to which the host's end is set.
   using Listener = std::function<void(std::span<const std::uint8_t> bytes, unsigned host_baud)>;
 
   /// Makes the terminal and the symbolic link to it, in place of one that an ended program left. Throws
@@ -33,22 +33,22 @@ class HostLine {
   /// Hands over what the host has written so far; otherwise this happens in the event loop.
   void poll();
 
-  /// Bytes for the host. While the line is unplugged they are lost.
+  /// Sends bytes to the host. While the line is unplugged they are lost.
   void write(std::span<const std::uint8_t> bytes);
 
   /// Rate of the host's end; 0 while the line is unplugged.
   [[nodiscard]] unsigned host_baud() const;
-  /// Sets the rate of the host's end, as another program on the host could. False for a rate that terminals do not
-  /// have.
+  /// Sets the rate of the host's end, as another program on the host could. Returns false for a rate that terminals do
+  /// not have.
   bool set_host_baud(unsigned baud);
 
   /// Unplugs the line: the host's end hangs up, its name disappears, bytes under way are lost.
   void hang_up();
-  /// Plugs it in again: a new terminal under the same name.
+  /// Plugs the line in again: a new terminal under the same name.
   void plug_in();
   [[nodiscard]] bool is_plugged_in() const { return pty_.has_value(); }
 
-  /// Bytes that the terminal has not taken yet.
+  /// Number of bytes that the terminal has not accepted yet.
   [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
   [[nodiscard]] std::uint64_t bytes_lost() const { return bytes_lost_; }
   [[nodiscard]] const std::filesystem::path& path() const { return link_; }

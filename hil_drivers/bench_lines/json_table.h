@@ -1,5 +1,5 @@
 #pragma once
-// One command on a control line: a JSON object with the keys of a table in the bench's file.
+// Command on a control line: a JSON object with the keys of a table in the scenario file of the emulator.
 
 #include <string>
 #include <string_view>
@@ -8,8 +8,8 @@
 
 namespace vbar::bench_lines {
 
-/// The table of a JSON object whose values are numbers and texts. `where` and `example` stand in the message. Throws
-/// mission::MissionError.
+/// Returns the table of a JSON object whose values are numbers and texts. `where` and `example` stand in the message.
+/// Throws mission::MissionError.
 [[nodiscard]] toml::table table_of_json(const std::string& line, const std::string& where, std::string_view example);
 
 }  // namespace vbar::bench_lines

@@ -1,5 +1,5 @@
 #pragma once
-// An emulated bench does not outlive the program that started it.
+// Watch on the parent: an emulator does not outlive the program that started it.
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>

@@ -19,7 +19,7 @@
 
 namespace vbar::bench_lines {
 
-/// One TCP connection that a client has opened.
+/// TCP connection that a client has opened.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   using Receive = std::function<void(Connection& connection, std::span<const std::uint8_t> bytes)>;
@@ -27,7 +27,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   explicit Connection(boost::asio::ip::tcp::socket socket) : socket_(std::move(socket)) {}
 
   void start(Receive receive);
-  /// After close(), or to a client that does not read, without effect.
+  /// Sends the bytes; without effect after close(), or to a client that does not read.
   void send(wire::Bytes bytes);
   void send(std::string_view text) { send(wire::Bytes(text.begin(), text.end())); }
   void close();
@@ -47,10 +47,10 @@ class Connection : public std::enable_shared_from_this<Connection> {
 /// A TCP port that accepts connections.
 class Listener : public std::enable_shared_from_this<Listener> {
  public:
-  /// Makes what receives the bytes of a new connection; empty: the connection is closed at once.
+  /// Makes the receiver of a new connection's bytes; empty: the connection is closed at once.
   using Accept = std::function<Connection::Receive()>;
 
-  /// Throws std::runtime_error if the port is not available.
+  /// Opens the port. Throws std::runtime_error if it is not available.
   Listener(boost::asio::io_context& context, std::uint16_t port,
            const boost::asio::ip::address_v4& address = boost::asio::ip::address_v4::loopback());
 
@@ -73,13 +73,13 @@ class DatagramPort : public std::enable_shared_from_this<DatagramPort> {
   using Endpoint = boost::asio::ip::udp::endpoint;
   using Receive = std::function<void(std::span<const std::uint8_t> datagram, const Endpoint& sender)>;
 
-  /// Throws std::runtime_error if the port is not available.
+  /// Opens the port. Throws std::runtime_error if it is not available.
   DatagramPort(boost::asio::io_context& context, std::uint16_t port);
 
   void start(Receive receive);
   /// Handles the datagrams that have arrived by now.
   void drain();
-  /// One that the system does not take is lost.
+  /// Sends a datagram. One that the system does not accept is lost.
   void send(std::span<const std::uint8_t> datagram, const Endpoint& receiver);
   void close();
   [[nodiscard]] std::uint16_t port() const;
@@ -92,7 +92,7 @@ class DatagramPort : public std::enable_shared_from_this<DatagramPort> {
   std::array<std::uint8_t, 2048> buffer_{};
 };
 
-/// A TCP and a UDP port with the same number, any free one if `port` is 0. Throws std::runtime_error.
+/// Opens a TCP and a UDP port with the same number, any free one if `port` is 0. Throws std::runtime_error.
 std::pair<std::shared_ptr<Listener>, std::shared_ptr<DatagramPort>> bind_both(boost::asio::io_context& context,
                                                                               std::uint16_t port);
 

@@ -1,5 +1,5 @@
 #pragma once
-// The file of the calibration that a mission names for its bench.
+// File of the calibration that a mission names for its testbed.
 
 #include <cstdint>
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace vbar::bench_process {
 
-/// How a calibration of a bench is made.
+/// Command that makes a calibration of a testbed.
 struct CalibrationCommand {
   std::string_view testbed;  ///< table of the mission: "testbed.tron"
   std::string command;  ///< with {N} for the seed and {out} for the file or its folder: of the emulated bench or of the
@@ -16,9 +16,9 @@ struct CalibrationCommand {
   std::string_view duration;
 };
 
-/// `path` with {data} and {seed} replaced: relative to the working directory or, if there is none, to the data folder,
-/// which has that of the emulated TRON for seed 1. Throws MissionError with the command that makes it if it
-/// is in neither.
+/// Returns `path` with {data} and {seed} replaced: relative to the working directory or, if there is no such file, to
+/// the data folder, which has the calibration of the emulated TRON for seed 1. Throws a MissionError with the command
+/// that makes the file if it is in neither.
 [[nodiscard]] std::filesystem::path bench_calibration_file(const std::string& path,
                                                            const std::filesystem::path& data_directory,
                                                            std::uint64_t seed, const CalibrationCommand& made_by);

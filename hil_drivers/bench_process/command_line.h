@@ -1,5 +1,5 @@
 #pragma once
-// The command line of a program that a mission names, started without a shell.
+// Command line of a program that a mission names, started without a shell.
 
 #include <span>
 #include <string>
@@ -9,12 +9,12 @@
 
 namespace vbar::bench_process {
 
-/// A word in braces and what stands for it: {"{seed}", "1"}.
+/// Word in braces and its value: {"{seed}", "1"}.
 using Replacement = std::pair<std::string_view, std::string>;
 
-/// The words of a command line, separated by spaces, with replacements made in each. A program without a slash is
-/// searched beside this program, so that a build need not be installed, and otherwise left to PATH. Empty for a command
-/// line without a word.
+/// Returns the words of a command line, separated by spaces, with replacements made in each. A program without a slash
+/// is searched beside this program, so that a build need not be installed, and otherwise left to PATH. Empty for a
+/// command line without a word.
 [[nodiscard]] std::vector<std::string> arguments_of(const std::string& command_line,
                                                     std::span<const Replacement> replacements);
 

@@ -48,7 +48,7 @@ bool BatchServer::take(std::span<const std::uint8_t> bytes) {
     case FrameType::kGoodbye:
       return false;
     default:
-      break;  // of a flight computer, or of the host's side
+      break;  // frames of a flight computer, or of the host's side
   }
   return true;
 }

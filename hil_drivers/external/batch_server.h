@@ -1,6 +1,6 @@
 #pragma once
-// The other end of a link (fsw/link/frame.h) for a program that answers batches of packets with batches of packets: a
-// sensor. Unlike boards/common it has a heap, so that an answer may have the tiles of an image.
+// Server of a link (fsw/link/frame.h) in a program that answers batches of packets with batches of packets: a sensor.
+// Unlike boards/common it has a heap, so that an answer may have the tiles of an image.
 
 #include <array>
 #include <cstdint>
@@ -18,10 +18,10 @@ namespace vbar::external {
 class BatchServer {
  public:
   using Packet = std::vector<std::uint8_t>;
-  /// The answer to a batch, of one packet at least.
+  /// Returns the answer to a batch, of one packet at least.
   using Serve = std::function<std::vector<Packet>(std::span<const Packet>)>;
 
-  /// `name`: in messages of the host, ASCII. `transport` outlives this.
+  /// Serves on `transport`, which outlives this. `name` stands in messages of the host, ASCII.
   BatchServer(pil::FrameTransport& transport, std::string name, Serve serve)
       : transport_(transport), name_(std::move(name)), serve_(std::move(serve)) {}
 
@@ -30,7 +30,7 @@ class BatchServer {
   void run(std::chrono::milliseconds patience);
 
  private:
-  /// False after the goodbye.
+  /// Handles a frame; returns false after the goodbye.
   bool take(std::span<const std::uint8_t> frame);
   void on_hello(const fsw::link::FrameView& frame);
   void on_data(const fsw::link::FrameView& frame);
@@ -45,7 +45,7 @@ class BatchServer {
   fsw::link::BatchReceiver inputs_;
   fsw::link::BatchSender outputs_;
   std::vector<Packet> batch_, answer_;
-  bool has_answer_ = false;  ///< to the batch of inputs_
+  bool has_answer_ = false;  ///< answer_ belongs to the batch of inputs_
   std::array<std::uint8_t, fsw::link::kMaxFrameBytes> frame_{};
 };
 

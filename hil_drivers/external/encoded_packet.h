@@ -7,7 +7,7 @@
 
 namespace vbar::external {
 
-/// The packet of a message. Throws std::runtime_error for a number that is not finite.
+/// Returns the packet of a message. Throws std::runtime_error for a number that is not finite.
 template <class Message>
 [[nodiscard]] twins::Packet packet_of(const fsw::packets::PacketHeader& header, const Message& message) {
   twins::Packet packet(fsw::packets::kMaxPacketBytes);

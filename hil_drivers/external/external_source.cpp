@@ -13,7 +13,7 @@ namespace {
 /// A sensor whose packets leave it later than this after their epoch states another unit of time.
 constexpr fsw::Duration kLongestDelay = fsw::duration_of_seconds(86400);
 
-/// Of the time of a measurement, for a clock that is not exact.
+/// Tolerance for the time of a measurement, for a clock that is not exact.
 constexpr fsw::Duration kClockMargin = fsw::duration_of_seconds(1);
 
 }  // namespace

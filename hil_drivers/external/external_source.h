@@ -1,6 +1,6 @@
 #pragma once
-// A sensor of the user's own in another process, in lock-step: at each of its epochs it is sent the truth, and
-// simulated time waits for its packets.
+// Sensor of a user in another process, in lock-step: at each of its epochs it is sent the truth, and simulated time
+// waits for its packets.
 
 #include <cstdint>
 #include <functional>
@@ -16,7 +16,7 @@ namespace vbar::external {
 
 class ExternalSource final : public twins::PacketSource {
  public:
-  /// The program at the other end of the link, which answers batches in the place of steps.
+  /// Connects to the program at the other end of the link, which answers batches in the place of steps.
   using Connect = std::function<std::unique_ptr<pil::FlightComputer>()>;
 
   ExternalSource(testbeds::PacketPlan plan, std::int64_t seed, SpacecraftNumbers numbers, Connect connect)
@@ -27,9 +27,9 @@ class ExternalSource final : public twins::PacketSource {
 
   [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override;
 
-  /// Throws std::runtime_error, one sentence that names the source, if the program has ended, does not answer in time
-  /// or answers with anything but packets of its sensor: nothing can be expected of it any more. A packet of the sensor
-  /// whose time or value is impossible is rejected, noted and counted.
+  /// Returns the packets of an epoch. Throws std::runtime_error, one sentence that names the source, if the program has
+  /// ended, does not answer in time or answers with anything but packets of its sensor: no further answer can be
+  /// expected. A packet of the sensor whose time or value is impossible is rejected, noted and counted.
   twins::Measurement measure(const twins::TruthSnapshot& truth) override;
   void command(const fsw::packets::PacketView& packet, fsw::GpsTime effective) override;
   [[nodiscard]] twins::TruthDetail truth_detail() const override { return twins::TruthDetail::kAccelerations; }
@@ -50,7 +50,7 @@ class ExternalSource final : public twins::PacketSource {
   std::unique_ptr<pil::FlightComputer> program_;
   std::uint32_t step_ = 0;
   std::optional<fsw::GpsTime> next_epoch_;
-  fsw::GpsTime last_epoch_;             ///< the one before; that of the start before the first
+  fsw::GpsTime last_epoch_;             ///< previous epoch; time of the start before the first
   std::uint64_t packets_rejected_ = 0;  ///< so far
   std::vector<Command> commands_;       ///< since the last exchange
 };

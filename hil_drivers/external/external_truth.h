@@ -1,6 +1,6 @@
 #pragma once
-// The true motion of a run in another process, in lock-step: for each time that the run needs it is sent what has
-// happened since the last one, and simulated time waits for its states.
+// True motion of a run in another process, in lock-step: for each time that the run needs, the process is sent the
+// events since the last time, and simulated time waits for its states.
 
 #include <cstdint>
 #include <functional>
@@ -16,13 +16,13 @@ namespace vbar::external {
 
 class ExternalTruth final : public testbeds::TestbedTruth {
  public:
-  /// The program at the other end of the link, which answers batches in the place of steps.
+  /// Connects to the program at the other end of the link, which answers batches in the place of steps.
   using Connect = std::function<std::unique_ptr<pil::FlightComputer>()>;
 
   ExternalTruth(testbeds::TruthPlan plan, Connect connect);
   ~ExternalTruth() override { end(); }
 
-  /// Asks for the states at the start too, which must be those of the plan.
+  /// Starts the truth and requests the states at the start, which must be those of the plan.
   void start() override;
   void stop() noexcept override { end(); }
   [[nodiscard]] std::int64_t exchanges() const override { return exchanges_; }
@@ -33,7 +33,8 @@ class ExternalTruth final : public testbeds::TestbedTruth {
   void point(fsw::GpsTime time, const fsw::Vector3& boresight_rtn, const fsw::Vector3& boresight_rate_rtn) override;
   [[nodiscard]] double wall_s() const override { return wall_s_; }
 
-  /// Beyond the present the perturbations of the point mass and angular accelerations are constant.
+  /// Returns the states at `time`. Beyond the present the perturbations of the point mass and angular accelerations are
+  /// constant.
   [[nodiscard]] twins::TruthSnapshot at(fsw::GpsTime time) override;
 
  private:
@@ -56,8 +57,8 @@ class ExternalTruth final : public testbeds::TestbedTruth {
   std::int64_t exchanges_ = 0;
   double wall_s_ = 0.0;
   twins::TruthSnapshot present_;                  ///< as last stated
-  std::vector<twins::SpacecraftTruth> expected_;  ///< the same with the impulses since then
-  std::vector<Command> commands_;                 ///< since then
+  std::vector<twins::SpacecraftTruth> expected_;  ///< present_ with the impulses since then
+  std::vector<Command> commands_;                 ///< commands since present_
 };
 
 }  // namespace vbar::external

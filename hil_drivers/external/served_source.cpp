@@ -23,7 +23,7 @@ ServedSource::~ServedSource() {
   try {
     source_->stop(twins::StopReason::kCompleted);
   } catch (...) {
-    // The run is over, and nobody listens.
+    // The run is over; an error has no receiver.
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// A PacketSource of this program at the other end of the exchange: vbar's own twin as a sensor in another process.
+// Server of a PacketSource of this program at the other end of the exchange: vbar's own twin as a sensor in another
+// process.
 
 #include <functional>
 #include <memory>
@@ -13,7 +14,7 @@ namespace vbar::external {
 
 class ServedSource {
  public:
-  /// The source of a name and a seed. Throws std::runtime_error if there is none.
+  /// Makes the source of a name and a seed. Throws std::runtime_error if there is none.
   using Make = std::function<std::unique_ptr<twins::PacketSource>(const Opening&)>;
 
   explicit ServedSource(Make make) : make_(std::move(make)) {}
@@ -21,8 +22,8 @@ class ServedSource {
   ServedSource(const ServedSource&) = delete;
   ServedSource& operator=(const ServedSource&) = delete;
 
-  /// The answer to a batch, pending packets included. Throws std::runtime_error for one that has no truth, and what the
-  /// source throws.
+  /// Returns the answer to a batch, pending packets included. Throws std::runtime_error for a batch without truth, and
+  /// what the source throws.
   std::vector<twins::Packet> answer(const Batch& batch);
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-// A true world of this program at the other end of the exchange: vbar's own truth model as the truth in another
-// process.
+// Server of a true world of this program at the other end of the exchange: vbar's own truth model as the truth in
+// another process.
 
 #include <functional>
 #include <memory>
@@ -13,13 +13,13 @@ namespace vbar::external {
 
 class ServedTruth {
  public:
-  /// The world at the start of the mission.
+  /// Makes the world at the start of the mission.
   using Make = std::function<std::unique_ptr<twins::TrueWorld>()>;
 
   ServedTruth(Make make, SpacecraftNumbers numbers) : make_(std::move(make)), numbers_(std::move(numbers)) {}
 
-  /// The answer to a batch. Throws std::runtime_error for a batch out of order, and for a start that is not that of the
-  /// world, and what the world throws.
+  /// Returns the answer to a batch. Throws std::runtime_error for a batch out of order, and for a start that is not
+  /// that of the world, and what the world throws.
   std::vector<twins::Packet> answer(const Batch& batch);
 
  private:

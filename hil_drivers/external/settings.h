@@ -1,5 +1,5 @@
 #pragma once
-// [testbed.external]: sensors of a mission that are programs of the user's own.
+// [testbed.external]: sensors of a mission that are programs of the user.
 
 #include <chrono>
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace vbar::external {
 
-/// Where the program of a source is: started by the run, or waiting for it at an address.
+/// Program of a source: started by the run, or waiting for it at an address.
 struct Program {
   std::string command;     ///< empty: at the address
   std::string host;        ///< IPv4 address
@@ -26,17 +26,17 @@ struct ProgramOfSource {
 };
 
 struct ExternalSettings : mission::TestbedSettings {
-  Program program;  ///< of every source without one of its own
+  Program program;  ///< program of every source that has none of its own
   std::vector<ProgramOfSource> sources;
-  std::chrono::milliseconds start_limit{30000};   ///< for the first answer
-  std::chrono::milliseconds answer_limit{10000};  ///< for each of the following
-  double memory_gib = 8.0;                        ///< limit of each program that is started
+  std::chrono::milliseconds start_limit{30000};   ///< limit for the first answer
+  std::chrono::milliseconds answer_limit{10000};  ///< limit for each of the following
+  double memory_gib = 8.0;                        ///< limit for each program that is started
 
-  /// Null: the mission names none for it.
+  /// Returns the program of a source; null: the mission names none for it.
   [[nodiscard]] const Program* program_of(std::string_view source) const;
 };
 
-/// Throws MissionError.
+/// Reads the table. Throws MissionError.
 std::shared_ptr<const mission::TestbedSettings> read_external(const mission::TableReader& section);
 
 }  // namespace vbar::external

@@ -18,7 +18,7 @@ constexpr double kPolarRadius = 6356752.3;  // m, WGS 84
 constexpr double kPosition_m = 10.0;
 constexpr double kVelocity_mps = 0.01;
 constexpr double kStep_s = 10.0;
-/// Of quaternions and rotation matrices in double precision, with a margin.
+/// Tolerance of quaternions and rotation matrices in double precision, with a margin.
 constexpr double kUnit = 1e-9;
 constexpr double kFirstAttitude_deg = 1.0;
 

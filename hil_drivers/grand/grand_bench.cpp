@@ -68,7 +68,8 @@ BodyTruth GrandBench::truth_at(const std::string& spacecraft, GpsTime time) cons
   return twins::gnss::body_truth(truth, *one);
 }
 
-/// Of the receiver's epochs after each multiple of their period in GPS time; the mission counts from its flight steps.
+/// Offset of the receiver's epochs after each multiple of their period in GPS time; the mission counts from its flight
+/// steps.
 Duration GrandBench::log_offset(const testbeds::ReceiverPlan& plan) const {
   const Duration period = fsw::nearest_duration(plan.settings.output.period_s);
   const Duration after_step = fsw::nearest_duration(plan.line.log_offset_s);

@@ -1,5 +1,5 @@
 #pragma once
-// The GNSS testbed during one run: one RF generator and the receivers of both spacecraft, shared by their sources.
+// GNSS testbed during one run: one RF generator and the receivers of both spacecraft, shared by their sources.
 
 #include <filesystem>
 #include <memory>
@@ -27,13 +27,13 @@ class GrandBench final : public testbeds::TestbedRun, public std::enable_shared_
   [[nodiscard]] engine::WallClock* clock() override;
   void finish() noexcept override;
 
-  // For the sources. The first that is started starts the testbed, the first that is stopped stops it.
+  // Calls of the sources. The first that is started starts the testbed, the first that is stopped stops it.
   void start(fsw::GpsTime first_epoch);
   void stop() noexcept;
   [[nodiscard]] std::optional<io::WiredReceiver> wired_receiver(std::size_t vehicle) const;
   [[nodiscard]] fsw::Duration sample_period() const { return settings_.sample_period; }
-  /// Sends the sample of the vehicle and takes what its receiver has sent. Throws std::runtime_error, one sentence, if
-  /// the run must end.
+  /// Sends the sample of the vehicle and returns the bytes that its receiver has sent. Throws std::runtime_error, one
+  /// sentence, if the run must end.
   twins::gnss::ReceiverOutput exchange(std::size_t vehicle, const twins::gnss::BodyTruth& truth);
 
  private:
@@ -56,7 +56,7 @@ class GrandBench final : public testbeds::TestbedRun, public std::enable_shared_
   fsw::GpsTime start_;
   bool is_started_ = false, is_stopped_ = false;
   std::optional<bench_process::BenchProcess> process_;
-  BenchAddresses addresses_;  ///< of the process, if there is one
+  BenchAddresses addresses_;  ///< addresses written by the process, if there is one
   std::vector<Vehicle> vehicles_;
   std::unique_ptr<Generator> generator_;
   std::optional<TimeBase> time_base_;  ///< real time only

@@ -1,5 +1,5 @@
 #pragma once
-// What the testbed adds to record, summary and report: grand.csv, the object "grand" of summary.json, a section.
+// Contributions of the testbed to record, summary and report: grand.csv, the object "grand" of summary.json, a section.
 
 #include <map>
 #include <optional>
@@ -17,21 +17,21 @@
 
 namespace vbar::grand {
 
-/// What is known at the end of a run, beside the rows.
+/// Figures at the end of a run, beside the rows.
 struct RunFigures {
   Pace pace = Pace::kLockStep;
   std::string_view generator;
-  std::vector<report::FileDigest> bench_files;  ///< of an emulated bench: program and scenario; empty: hardware
+  std::vector<report::FileDigest> bench_files;  ///< program and scenario of an emulator; empty: hardware
   bool is_emulated = false;
-  std::map<std::string, int> faults;                              ///< of an emulated bench, that have taken effect
+  std::map<std::string, int> faults;                              ///< faults of an emulator that have taken effect
   std::optional<EdgeStatistics> edges;                            ///< real time with edges only
   std::vector<std::pair<std::string, LinkStatistics>> receivers;  ///< by spacecraft
 };
 
-/// Into record.summary.testbeds["grand"] and, for the files, its provenance.
+/// Adds the figures to record.summary.testbeds["grand"] and the files to its provenance.
 void add_figures(const RunFigures& figures, report::RunRecord& record);
 
-// The extension.
+// Parts of the extension.
 [[nodiscard]] std::vector<report::TableKind> tables();
 void summarise(const report::RunRecord& record, report::Summary& summary);
 [[nodiscard]] std::vector<report::Section> sections(const report::RunRecord& record);

@@ -1,5 +1,5 @@
 #pragma once
-// A second of the testbed (grand.csv).
+// Record of a second of the testbed (grand.csv).
 
 #include <cstdint>
 #include <optional>
@@ -9,11 +9,11 @@
 
 namespace vbar::grand {
 
-/// One receiver in that second.
+/// State of one receiver in that second.
 struct ReceiverSecond {
   std::int64_t bytes = 0;
-  int time_status = 0;              ///< of its last epoch, as in the header of its logs
-  int tracked_signals = 0;          ///< in its last epoch
+  int time_status = 0;              ///< status of its last epoch, as in the header of its logs
+  int tracked_signals = 0;          ///< number in its last epoch
   bool is_lost = false;             ///< not connected, or silent
   std::optional<double> latency_s;  ///< from an epoch to its last byte at the host, of an epoch that arrived
 };

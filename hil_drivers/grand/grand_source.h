@@ -1,5 +1,5 @@
 #pragma once
-// One receiver of the testbed as the sensor of its spacecraft calls it: a trajectory sample goes out, bytes come back.
+// Receiver of the testbed as the sensor of its spacecraft calls it: a trajectory sample is sent, bytes are returned.
 
 #include <cstddef>
 #include <memory>

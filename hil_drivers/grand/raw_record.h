@@ -1,5 +1,5 @@
 #pragma once
-// The bytes of one receiver as they came, kept in memory until there is a run folder, then in a file of it. Public
+// Bytes of one receiver as they came, kept in memory until there is a run folder, then in a file of the folder. Public
 // tools read such files (RTKLIB: convbin -r nov).
 
 #include <cstdint>
@@ -14,9 +14,9 @@ namespace vbar::grand {
 
 class RawRecord {
  public:
-  /// From any thread. Throws std::runtime_error if the file takes no more.
+  /// Adds bytes, from any thread. Throws std::runtime_error if the file cannot be extended.
   void add(std::span<const std::uint8_t> bytes);
-  /// What has come so far and comes from now on is in the file. Throws std::runtime_error that names it.
+  /// Writes all bytes, earlier and later ones, to the file. Throws std::runtime_error that names it.
   void keep_in(const std::filesystem::path& file);
   void flush();
 

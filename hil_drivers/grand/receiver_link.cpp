@@ -17,7 +17,7 @@ using twins::gnss::BodyTruth;
 using twins::gnss::ReceiverOutput;
 
 constexpr Duration kBetweenAttempts = fsw::duration_of_seconds(1);
-constexpr Duration kMemory = fsw::duration_of_seconds(3);  // of attitudes: longer than any latency
+constexpr Duration kMemory = fsw::duration_of_seconds(3);  // attitudes kept: longer than any latency
 constexpr int kSilentEpochs = 3;
 // Bytes that complete no epoch are passed on after this, or when there are this many.
 constexpr Duration kLongestWait = fsw::duration_of_seconds(2);

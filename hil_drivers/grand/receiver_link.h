@@ -1,5 +1,6 @@
 #pragma once
-// One receiver during a run: its port, the bursts of its epochs with the attitude at each, its losses and its record.
+// Link to one receiver during a run: its port, the bursts of its epochs with the attitude at each, its losses and its
+// record.
 
 #include <atomic>
 #include <cstdint>
@@ -26,8 +27,8 @@ struct LinkPlan {
   std::string spacecraft;
   std::string device;
   ReceiverConfiguration configuration;
-  fsw::Duration period;   ///< of its epochs
-  fsw::Duration give_up;  ///< after being lost for this long the run ends
+  fsw::Duration period;   ///< period of its epochs
+  fsw::Duration give_up;  ///< duration of a loss after which the run ends
   fsw::Duration max_latency = fsw::nearest_duration(testbeds::ReceiverLine{}.max_latency_s);
   bool week_shift = false;
   bool bytes_bypass_host = false;
@@ -36,14 +37,14 @@ struct LinkPlan {
   Patience reopen_patience{.probe = std::chrono::milliseconds(500), .attempts = 1};
 };
 
-/// Counted over the run.
+/// Figures counted over the run.
 struct LinkStatistics {
   std::uint64_t bytes = 0;
   std::uint64_t epochs = 0;
   std::uint64_t losses = 0, reconnects = 0;
   double lost_s = 0.0;
   int week_shift = 0;
-  std::vector<double> latencies_s;  ///< of every epoch with a fine tag
+  std::vector<double> latencies_s;  ///< latency of every epoch with a fine tag
   fsw::gnss::OemStreamCounters stream{};
 };
 
@@ -54,20 +55,21 @@ class ReceiverLink {
   ReceiverLink(const ReceiverLink&) = delete;
   ReceiverLink& operator=(const ReceiverLink&) = delete;
 
-  /// Throws std::runtime_error, one sentence.
+  /// Opens the port. Throws std::runtime_error, one sentence.
   void open();
   void keep_in(const std::filesystem::path& folder);
   void close() noexcept;
 
-  /// Once a sample period. `arrival`: the time by which what is read has arrived. Throws std::runtime_error, one
-  /// sentence, if the run must end: lost for too long, tags of another time, a receiver that withholds its solution.
+  /// Returns the output of a sample period; called once in each. `arrival` is the time by which the bytes read have
+  /// arrived. Throws std::runtime_error, one sentence, if the run must end: lost for too long, tags of another time, a
+  /// receiver that withholds its solution.
   twins::gnss::ReceiverOutput take(const twins::gnss::BodyTruth& truth, fsw::GpsTime arrival);
 
-  /// Since the last call of this function.
+  /// Returns the figures since the last call of this function.
   [[nodiscard]] ReceiverSecond second();
   [[nodiscard]] LinkStatistics statistics() const;
   [[nodiscard]] bool is_lost() const { return lost_since_.has_value(); }
-  /// In logs that were received whole.
+  /// Number of bytes in logs that were received whole.
   [[nodiscard]] std::uint64_t message_bytes() const { return cutter_.counters().message_bytes; }
   [[nodiscard]] const std::string& spacecraft() const { return plan_.spacecraft; }
 
@@ -100,7 +102,7 @@ class ReceiverLink {
   ReceiverSecond second_;
   std::vector<twins::Note> notes_;
 
-  std::optional<fsw::GpsTime> last_heard_;  ///< a whole message: a line at another rate gives bytes too
+  std::optional<fsw::GpsTime> last_heard_;  ///< last whole message: a line at another rate gives bytes too
   std::optional<fsw::GpsTime> last_delivery_;
   std::optional<fsw::GpsTime> lost_since_;
   std::string lost_reason_;

@@ -1,5 +1,5 @@
 #pragma once
-// When the samples of the trajectory are sent: their lead on the generator's time, those late and those missing.
+// Times at which the samples of the trajectory are sent: their lead on the generator's time, late and missing ones.
 
 #include <algorithm>
 #include <cstdint>
@@ -20,8 +20,8 @@ class SampleTimes {
     double lead_sum_ms = 0.0;
   };
 
-  /// A sample for `time` follows one for `before` (below zero: none). `lead`: of its own time before the generator's;
-  /// empty in lock-step.
+  /// Records a sample for `time` that follows one for `before` (below zero: none). `lead` is its own time before the
+  /// generator's; empty in lock-step.
   void add(fsw::Duration time, fsw::Duration before, std::optional<fsw::Duration> lead) {
     ++second_.samples;
     if (before.ns >= 0) second_.missing += std::max<std::int64_t>(0, (time.ns - before.ns) / period_.ns - 1);
@@ -32,7 +32,7 @@ class SampleTimes {
     second_.lead_sum_ms += lead_ms;
   }
 
-  /// Since the last call of this function.
+  /// Returns the figures since the last call of this function.
   [[nodiscard]] Second take() { return std::exchange(second_, {}); }
 
  private:

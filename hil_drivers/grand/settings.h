@@ -12,7 +12,7 @@
 
 namespace vbar::grand {
 
-/// testbed.grand.pps: the socket that the bench names.
+/// Value of testbed.grand.pps that means the socket named by the emulator.
 inline constexpr const char* kEdgesOfBench = "socket";
 
 struct GrandSettings : mission::TestbedSettings {
@@ -21,19 +21,19 @@ struct GrandSettings : mission::TestbedSettings {
   std::string host = "127.0.0.1";
   std::uint16_t control_port =
       0;                       ///< of the generator, or of its first instance, the next follow; 0: as the bench says
-  std::uint16_t hil_port = 0;  ///< 0: as the generator says
+  std::uint16_t hil_port = 0;  ///< 0: as the generator states
   fsw::Duration sample_period;
-  fsw::Duration lead;  ///< of a sample's own time before its sending; real time only
+  fsw::Duration lead;  ///< a sample's own time before its sending; real time only
   fsw::Duration join;
   Pace pace = Pace::kLockStep;
   std::string pps;        ///< "none", a source of edges (pps/edge_source.h), or kEdgesOfBench
-  std::string bench;      ///< command line of the emulated bench; empty: hardware, or a bench that runs already
-  fsw::Duration give_up;  ///< after a receiver has been lost for this long the run ends
+  std::string bench;      ///< command line of the emulator; empty: hardware, or an emulator that runs already
+  fsw::Duration give_up;  ///< duration of a receiver's loss after which the run ends
   bool week_shift = false;
   std::string chrony;  ///< socket of chronyd's refclock SOCK, to which edges are forwarded; empty: none
 };
 
-/// Throws MissionError.
+/// Reads the table. Throws MissionError.
 std::shared_ptr<const mission::TestbedSettings> read_grand(const mission::TableReader& section);
 
 }  // namespace vbar::grand

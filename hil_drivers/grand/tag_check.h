@@ -1,5 +1,5 @@
 #pragma once
-// Compares the time tags of a receiver with the time of the run: receivers count weeks modulo 1024 and add a constant
+// Comparison of a receiver's time tags with the time of the run: receivers count weeks modulo 1024 and add a constant
 // of their firmware, and a scenario may have been started at another time.
 
 #include <optional>
@@ -11,16 +11,16 @@ namespace vbar::grand {
 
 class TagCheck {
  public:
-  /// `receiver` begins the messages: "receiver of servicer on /dev/ttyUSB0". `max_latency`: of the first epoch; below
-  /// a second it shows a scenario that is off by one second in either direction.
+  /// `receiver` begins the messages: "receiver of servicer on /dev/ttyUSB0". `max_latency` is that of the first epoch;
+  /// below a second it shows a scenario that is off by one second in either direction.
   TagCheck(std::string receiver, bool accepts_week_shift, fsw::Duration max_latency)
       : receiver_(std::move(receiver)), accepts_week_shift_(accepts_week_shift), max_latency_(max_latency) {}
 
-  /// Of an epoch whose status is FINE or better, and whose last byte arrived at `arrival`. Throws std::runtime_error,
-  /// one sentence, if it is another time than the run's.
+  /// Checks an epoch whose status is FINE or better, and whose last byte arrived at `arrival`. Throws
+  /// std::runtime_error, one sentence, if its time is not the run's.
   void check(fsw::GpsTime tag, fsw::GpsTime arrival);
 
-  /// Weeks to be added to the receiver's; 0 before the first tag.
+  /// Number of weeks to be added to the receiver's; 0 before the first tag.
   [[nodiscard]] int weeks() const { return weeks_.value_or(0); }
   [[nodiscard]] bool has_checked() const { return weeks_.has_value(); }
 

@@ -1,6 +1,6 @@
 #pragma once
-// The time of a run in real time: that of the generator's edges or, without edges, of the host's clock from the
-// generator's start.
+// Time of a run in real time: that of the generator's edges or, without edges, of the host's clock from the generator's
+// start.
 
 #include <chrono>
 #include <memory>
@@ -16,24 +16,26 @@ namespace vbar::grand {
 
 class TimeBase final : public engine::WallClock {
  public:
-  /// `start`: of the generator, and of the run. `pps`: the source of the edges (edge_source.h) or "none". `chrony`:
-  /// where they are forwarded to (chrony_output.h), if not empty. Throws std::runtime_error if it cannot be opened.
+  /// `start` is the start of the generator and of the run, `pps` the source of the edges (edge_source.h) or "none",
+  /// `chrony` the socket to which they are forwarded (chrony_output.h), if not empty. Throws std::runtime_error if it
+  /// cannot be opened.
   TimeBase(fsw::GpsTime start, const std::string& pps, const std::string& chrony = {});
 
-  /// The generator has been started: at `host_start` of the host's clock, if it says so; otherwise its edges say so or,
-  /// without them, it is taken to be now. Waits for the first edge; throws std::runtime_error if there is none.
+  /// Begins the time of the run after the start of the generator. `host_start` is the start on the host's clock, if the
+  /// generator states it; otherwise its edges give the start or, without edges, the time of this call. Waits for the
+  /// first edge; throws std::runtime_error if there is none.
   void begin(std::optional<std::chrono::steady_clock::time_point> host_start);
 
   Span now() override { return clock().now(); }
   Span start_of_run() override { return start_of_run_; }
   void sleep_until(Span wake) override { clock().sleep_until(wake); }
 
-  /// At present, on the generator's time.
+  /// Present time, on the generator's time.
   [[nodiscard]] fsw::GpsTime time() { return start_ + fsw::Duration{(now() - start_of_run_).count()}; }
 
-  /// Null without edges.
+  /// Clock of the edges; null without edges.
   [[nodiscard]] const EdgeClock* edges() const { return edges_.get(); }
-  /// The last edge, since the start; empty before the first.
+  /// Time of the last edge since the start; empty before the first.
   [[nodiscard]] std::optional<double> last_edge_s() const;
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-// A second thread that works only while the first one waits for it: a function that has to wait for simulated time is
-// continued at each call. Both together are deterministic, as one thread would be.
+// Cooperative second thread: it works only while the first one waits for it. A function that has to wait for simulated
+// time is continued at each call. Both together are deterministic, as one thread would be.
 
 #include <atomic>
 #include <functional>
@@ -20,7 +20,7 @@ class Turns {
   Turns(const Turns&) = delete;
   Turns& operator=(const Turns&) = delete;
 
-  /// `work` calls wait() to be continued later; it must return or throw soon after is_abandoned().
+  /// Starts the work. `work` calls wait() to be continued later; it must return or throw soon after is_abandoned().
   void start(std::function<void()> work) {
     is_done_ = false;
     work_ = std::async(std::launch::async, [this, run = std::move(work)] {
@@ -37,7 +37,7 @@ class Turns {
   }
   [[nodiscard]] bool is_running() const { return work_.valid(); }
 
-  /// Continues the work at `time`, until it waits or ends. True if it has ended; throws what it has thrown.
+  /// Continues the work at `time`, until it waits or ends. Returns true if it has ended; throws what it has thrown.
   bool go_on(Point time) {
     time_ = time;
     to_work_.release();
@@ -54,12 +54,12 @@ class Turns {
       try {
         go_on(time_);
       } catch (...) {
-        // The work has ended in its own way.
+        // The work ends by its own exception.
       }
     }
   }
 
-  // For the work.
+  // Calls of the work.
   [[nodiscard]] Point now() const { return time_; }
   void wait() {
     to_caller_.release();

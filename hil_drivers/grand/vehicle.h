@@ -1,5 +1,5 @@
 #pragma once
-// One spacecraft in the testbed: the trajectory of its antenna and its receiver.
+// Spacecraft in the testbed: the trajectory of its antenna and its receiver.
 
 #include <optional>
 
@@ -13,10 +13,10 @@ struct Vehicle {
   explicit Vehicle(testbeds::ReceiverPlan of) : plan(std::move(of)) {}
 
   testbeds::ReceiverPlan plan;
-  // From the start of the testbed on.
+  // Members that exist from the start of the testbed on.
   std::optional<AntennaTrajectory> trajectory;
   std::unique_ptr<ReceiverLink> link;
-  fsw::Duration last_sample{-1};  ///< sent, since the start
+  fsw::Duration last_sample{-1};  ///< time of the last sample sent, since the start
   GeneratorState state{};
 };
 

@@ -19,7 +19,7 @@ namespace vbar::wire {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// A message that does not decode, or a value that cannot be encoded: one sentence with the position.
+/// Error of a message that does not decode, or of a value that cannot be encoded: one sentence with the position.
 class WireError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -30,7 +30,7 @@ enum class ByteOrder { kLsbFirst, kMsbFirst };
 template <class Number>
 concept WireNumber = std::integral<Number> || std::floating_point<Number>;
 
-/// The bytes of `value` in `order`; its own inverse with respect to the order of this computer.
+/// Returns the bytes of `value` in `order`; the function is its own inverse with respect to the order of this computer.
 template <WireNumber Number>
 std::array<std::uint8_t, sizeof(Number)> bytes_of(Number value, ByteOrder order) {
   std::array<std::uint8_t, sizeof(Number)> bytes{};
@@ -59,7 +59,7 @@ class ByteWriter {
 
 class ByteReader {
  public:
-  /// `what` is the name of the message in errors; it outlives the reader.
+  /// Reads `bytes`. `what` is the name of the message in errors; it outlives the reader.
   ByteReader(std::span<const std::uint8_t> bytes, std::string_view what, ByteOrder order = ByteOrder::kLsbFirst)
       : bytes_(bytes), what_(what), order_(order) {}
 
@@ -72,14 +72,14 @@ class ByteReader {
     if (!is_native) std::reverse(copy.begin(), copy.end());
     return std::bit_cast<Number>(copy);
   }
-  /// Refuses a number that is not finite.
+  /// Reads a number and rejects one that is not finite.
   double finite(std::string_view field);
   fsw::Vector3 vector(std::string_view field);
   std::span<const std::uint8_t> take(std::size_t count, std::string_view field);
 
   [[nodiscard]] std::size_t position() const { return position_; }
   [[nodiscard]] std::size_t remaining() const { return bytes_.size() - position_; }
-  /// Refuses bytes behind the last field.
+  /// Rejects bytes behind the last field.
   void finish() const;
   [[noreturn]] void fail(std::string_view field, std::string_view problem) const;
 

@@ -13,7 +13,7 @@ namespace vbar::wire {
 class LineBuffer {
  public:
   void append(std::span<const std::uint8_t> bytes) { buffer_.insert(buffer_.end(), bytes.begin(), bytes.end()); }
-  /// The next complete line. Throws WireError if more than 8192 characters arrive without a line end; they are
+  /// Returns the next complete line. Throws WireError if more than 8192 characters arrive without a line end; they are
   /// discarded.
   std::optional<std::string> next();
 

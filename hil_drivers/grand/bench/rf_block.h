@@ -1,5 +1,5 @@
 #pragma once
-// What leaves one RF output of the emulated generator during 100 ms: the interface between generator and receivers.
+// Radio field at one RF output of the emulated generator during 100 ms: the interface between generator and receivers.
 //
 // The generator's time is the time of the radio field; the receivers' clocks run beside it. In the field at time t a
 // carrier that left the satellite's oscillator at t - carrier_m(t)/c arrives, so that the phase of the carrier against
@@ -14,7 +14,7 @@
 
 namespace vbar::grand::bench {
 
-/// A quintic in seconds since the beginning of the block, metres.
+/// Quintic in seconds since the beginning of the block, metres.
 struct RangePolynomial {
   std::array<double, 6> coefficients{};
 
@@ -30,8 +30,8 @@ struct RangePolynomial {
   }
 };
 
-/// One signal of one satellite. Both ranges contain geometry, relativity, the satellite's clock and the imperfections
-/// of the generator; the ionosphere delays the code and advances the carrier.
+/// Signal of one satellite. Both ranges contain geometry, relativity, the satellite's clock and the imperfections of
+/// the generator; the ionosphere delays the code and advances the carrier.
 struct RfSignal {
   twins::gnss::SatelliteId satellite;
   twins::gnss::Signal signal = twins::gnss::Signal::kGpsL1;
@@ -40,7 +40,7 @@ struct RfSignal {
   double cn0_dbhz = 0.0;   ///< at the output of a perfect correlator, receiver noise included
 };
 
-/// Signals are ordered by satellite, then signal; a signal that is not listed is not radiated.
+/// Signals of one block, ordered by satellite, then signal; a signal that is not listed is not radiated.
 struct RfBlock {
   static constexpr fsw::Duration kLength = fsw::Duration{100'000'000};
 

@@ -1,6 +1,6 @@
 #pragma once
-// The driver's end of a control connection: every wait has a limit, and every error is one sentence with generator,
-// command and answer.
+// Driver's end of a control connection: every wait has a limit, and every error is one sentence with generator, command
+// and answer.
 
 #include <chrono>
 #include <cstdint>
@@ -20,13 +20,13 @@ class ControlConnection {
                     std::chrono::milliseconds answer_limit);
 
   void send(std::string_view command, std::span<const std::uint8_t> bytes);
-  /// The bytes that arrive next, at least one.
+  /// Returns the bytes that arrive next, at least one.
   std::span<const std::uint8_t> receive(std::string_view command, io::Clock::time_point deadline);
-  /// Bytes that have arrived without a command, if any: how a closed connection is noticed.
+  /// Returns bytes that have arrived without a command, if any; a closed connection is detected in this way.
   std::span<const std::uint8_t> poll(std::string_view command);
 
   [[nodiscard]] io::Clock::time_point answer_deadline() const { return io::Clock::now() + answer_limit_; }
-  /// "Skydel at 127.0.0.1:4820: StartPPS: PROBLEM"
+  /// Throws "Skydel at 127.0.0.1:4820: StartPPS: PROBLEM".
   [[noreturn]] void fail(std::string_view command, std::string_view problem) const;
   [[nodiscard]] const std::string& name() const { return name_; }
 

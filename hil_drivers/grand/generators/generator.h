@@ -1,6 +1,6 @@
 #pragma once
-// An RF generator that flies vehicles along trajectories it receives: what the driver asks of it, whatever its
-// protocol. A kind of generator is a folder beside this file and one line in generators.cpp.
+// RF generator that moves vehicles along trajectories it receives: the interface of the driver, for any protocol. A
+// kind of generator is a file beside this one and one line in the list of generator_kinds().
 
 #include <chrono>
 #include <cstddef>
@@ -19,30 +19,30 @@ namespace vbar::grand {
 
 enum class Pace { kLockStep, kRealTime };
 
-/// What all generators are configured with before a run.
+/// Configuration of every generator before a run.
 struct GeneratorPlan {
-  fsw::GpsTime start;                 ///< of the first sample; whole second
+  fsw::GpsTime start;                 ///< time of the first sample; whole second
   std::vector<std::string> vehicles;  ///< in the order of the `vehicle` arguments below
   fsw::Duration sample_period;
-  fsw::Duration join;  ///< during which a new sample is joined to the motion flown so far
+  fsw::Duration join;  ///< duration in which a new sample is joined to the motion so far
   Pace pace = Pace::kLockStep;
   std::string host;
-  std::vector<std::uint16_t> control_ports;  ///< of the vehicles' instances, or of the one machine
+  std::vector<std::uint16_t> control_ports;  ///< port of each vehicle's instance, or of the one machine
   std::uint16_t hil_port = 0;                ///< 0: the generator's own answer, or its control port
 };
 
-/// What the generator makes of the trajectory.
+/// Continuation of the trajectory by the generator, as it reports it.
 enum class Extrapolation { kDeterministic = 0, kNonDeterministic = 1, kSnap = 2 };
 
 struct GeneratorState {
   std::string text;  ///< the generator's own words: "Streaming RF"
   bool is_streaming = false;
-  std::string error = {};  ///< if the generator reports one
+  std::string error = {};  ///< error that the generator reports, if any
   std::optional<Extrapolation> extrapolation = std::nullopt;
 };
 
-/// All functions throw std::runtime_error, one sentence with generator, command and answer, if the generator refuses,
-/// does not answer or has closed the connection.
+/// Generator of a run. All functions throw std::runtime_error, one sentence with generator, command and answer, if the
+/// generator rejects a command, does not answer or has closed the connection.
 class Generator {
  public:
   Generator() = default;
@@ -50,21 +50,22 @@ class Generator {
   Generator& operator=(const Generator&) = delete;
   virtual ~Generator() = default;
 
-  /// Configures it with a sample of time 0 for each vehicle. Afterwards start() is all that is missing.
+  /// Configures the generator with a sample of time 0 for each vehicle. Afterwards only start() is missing.
   virtual void prepare(std::span<const TrajectorySample> first) = 0;
 
-  /// Real time: returns the host's clock (std::chrono::steady_clock) at the generator's time 0, as well as the
-  /// generator says it; empty if only its edges state it. Lock-step: the generator runs as far as its samples reach.
+  /// Starts the generator. Real time: returns the host's clock (std::chrono::steady_clock) at the generator's time 0,
+  /// as exactly as the generator states it; empty if only its edges state it. Lock-step: the generator runs as far as
+  /// its samples reach.
   virtual std::optional<std::chrono::steady_clock::time_point> start() = 0;
 
   virtual void send(std::size_t vehicle, const TrajectorySample& sample) = 0;
 
-  /// Waits until the vehicle has been flown up to `time` (since start) or `deadline` has passed; the time reached, as
-  /// the generator reports it. Empty: it has reported none by then.
+  /// Waits until the vehicle has been moved up to `time` (since start) or `deadline` has passed; returns the time
+  /// reached, as the generator reports it. Empty: it has reported none by then.
   virtual std::optional<fsw::Duration> wait_for(std::size_t vehicle, fsw::Duration time,
                                                 std::chrono::steady_clock::time_point deadline) = 0;
 
-  /// Asks for the state; about once a second in real time.
+  /// Requests the state; about once a second in real time.
   virtual GeneratorState state(std::size_t vehicle) = 0;
 
   /// Ends the radiation. Does not throw.
@@ -84,10 +85,10 @@ struct GeneratorKind {
   /// Reads the kind's own table; throws MissionError.
   std::shared_ptr<const GeneratorSettings> (*read)(const mission::TableReader& section);
   std::unique_ptr<Generator> (*make)(const GeneratorPlan& plan, const GeneratorSettings& settings);
-  bool has_instance_per_vehicle = false;  ///< with a control port each, in sequence
+  bool has_instance_per_vehicle = false;  ///< one instance per vehicle, with a control port each, in sequence
 };
 
-/// All kinds of this program; the first is the default.
+/// Returns all kinds of this program; the first is the default.
 [[nodiscard]] std::span<const GeneratorKind* const> generator_kinds();
 
 }  // namespace vbar::grand

@@ -17,7 +17,7 @@ using boost::system::error_code;
 using Span = engine::WallClock::Span;
 
 struct SockSample {
-  timeval time;   ///< of the system's clock
+  timeval time;   ///< time of the system's clock
   double offset;  ///< reference minus system, s
   int pulse;      ///< 1: the second is not known; such a source needs another one to number its seconds
   int leap;

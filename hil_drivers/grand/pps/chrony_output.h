@@ -1,6 +1,6 @@
 #pragma once
-// PPS edges for chronyd's reference clock SOCK, so that a program of others can judge them. The datagram is chrony's
-// struct sock_sample in the byte order and type sizes of this computer, 40 bytes.
+// Output of PPS edges to chronyd's reference clock SOCK, so that an independent program can judge them. The datagram is
+// chrony's struct sock_sample in the byte order and type sizes of this computer, 40 bytes.
 
 #include <array>
 #include <cstdint>
@@ -13,18 +13,19 @@ namespace vbar::grand {
 
 inline constexpr std::size_t kChronySampleBytes = 40;
 
-/// A sample that says: at `realtime` of the system's clock, a whole second of the reference began (the nearest one).
+/// Returns a sample that states: at `realtime` of the system's clock, a whole second of the reference began (the
+/// nearest one).
 [[nodiscard]] std::array<std::uint8_t, kChronySampleBytes> chrony_sample(engine::WallClock::Span realtime);
 
 class ChronyOutput {
  public:
-  /// `path`: the socket of chronyd's `refclock SOCK`. Throws std::runtime_error for a path that cannot be a socket's.
+  /// `path` is the socket of chronyd's `refclock SOCK`. Throws std::runtime_error for a path that cannot be a socket's.
   explicit ChronyOutput(const std::string& path);
   ~ChronyOutput();
   ChronyOutput(const ChronyOutput&) = delete;
   ChronyOutput& operator=(const ChronyOutput&) = delete;
 
-  /// Does not wait, and does not fail if no chronyd is listening.
+  /// Sends the edge. Does not wait, and does not fail if no chronyd is listening.
   void forward(const Edge& edge);
 
   [[nodiscard]] std::uint64_t sent() const { return sent_; }

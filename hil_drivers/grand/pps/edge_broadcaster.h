@@ -1,5 +1,5 @@
 #pragma once
-// The sender of PPS edges on a Unix datagram socket: the bench's end of socket_edges.h.
+// Sender of PPS edges on a Unix datagram socket: the emulator's end of socket_edges.h.
 
 #include <cstdint>
 #include <memory>
@@ -17,11 +17,11 @@ class EdgeBroadcaster {
   EdgeBroadcaster(const EdgeBroadcaster&) = delete;
   EdgeBroadcaster& operator=(const EdgeBroadcaster&) = delete;
 
-  /// Accepts who has subscribed since the last call, and sends the edge to all: once, unless a fault below is pending.
-  /// Does not wait: an edge that a subscriber's queue does not accept is lost for it.
+  /// Accepts the clients that have subscribed since the last call, and sends the edge to all: once, unless a fault
+  /// below is pending. Does not wait: an edge that a subscriber's queue does not accept is lost for that subscriber.
   void send(const wire::PpsDatagram& edge);
 
-  // Faults, from the next edge on.
+  // Faults that act from the next edge on.
   void miss(unsigned edges) { missing_ += edges; }        ///< are not sent
   void repeat(unsigned edges) { doubled_ += edges; }      ///< are sent twice
   void jump(fsw::Duration by) { jump_ = jump_ + by; }     ///< all later edges are labelled `by` later

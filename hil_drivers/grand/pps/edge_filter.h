@@ -1,11 +1,11 @@
 #pragma once
-// The time of a 1PPS as a function of the host's monotonic clock: offset and rate, estimated by a Kalman filter over
-// the edges. Time here is in seconds of the edge source, divided by the speed factor, since the first edge.
+// Time of a 1PPS as a function of the host's monotonic clock, by a Kalman filter over the edges. Time here is in
+// seconds of the edge source, divided by the speed factor, since the first edge.
 //
-// State: offset p (s) and rate error r (s/s) of the edges' time against the host's clock. Between edges p grows by r
-// dt, and r is a random walk of spectral density rate_walk^2: covariance rate_walk^2 [dt^3/3, dt^2/2; dt^2/2, dt]. An
-// edge measures p with edge_sigma_s. (Bar-Shalom, Li, Kirubarajan: Estimation with Applications to Tracking and
-// Navigation, 2001, section 6.2.2.)
+// State: [p, r], offset (s) and rate error (s/s) of the edges' time against the host's clock.
+// Propagation by dt: p' = p + r dt, r a random walk of spectral density q = rate_walk^2, with covariance Q = q [dt^3/3,
+// dt^2/2; dt^2/2, dt]. An edge measures p with edge_sigma_s. (Bar-Shalom, Li, Kirubarajan: Estimation with Applications
+// to Tracking and Navigation, 2001, section 6.2.2.)
 
 #include <cstdint>
 #include <optional>
@@ -16,10 +16,10 @@ namespace vbar::grand {
 
 struct EdgeFilterSettings {
   double edge_sigma_s = 100e-6;        ///< jitter of one edge
-  double rate_walk = 1e-8;             ///< of the rate error, per square root of a second
-  double initial_rate_sigma = 100e-6;  ///< of the host's clock before the first edges
+  double rate_walk = 1e-8;             ///< random walk of the rate error, per square root of a second
+  double initial_rate_sigma = 100e-6;  ///< rate error of the host's clock before the first edges
   double gate_sigmas = 3.0;
-  int accept_after = 3;       ///< consecutive rejected edges that agree with each other are where the edges are now
+  int accept_after = 3;       ///< consecutive rejected edges that agree with each other until they are accepted
   double speed_factor = 1.0;  ///< seconds of the edges per second of the host's clock
 };
 
@@ -31,20 +31,20 @@ class EdgeFilter {
 
   explicit EdgeFilter(const EdgeFilterSettings& settings) : settings_(settings) {}
 
-  /// Edges in the order of their arrival.
+  /// Processes an edge. Edges come in the order of their arrival.
   EdgeVerdict add(const Edge& edge);
 
   [[nodiscard]] bool has_started() const { return started_; }
-  /// Time of the edges at a time of the host's clock, and the inverse. The first edge has time 0.
+  /// Converts a time of the host's clock to the time of the edges, and back. The first edge has time 0.
   [[nodiscard]] Span at(Span host) const;
   [[nodiscard]] Span host_at(Span time) const;
 
   /// GPS time of the first edge according to the present labels; empty if the edges have none.
   [[nodiscard]] std::optional<fsw::GpsTime> origin_gps() const { return origin_gps_; }
 
-  /// Of the last edge that was not doubled: predicted minus measured, s. Before the edge was used.
+  /// Predicted minus measured time of the last edge that was not doubled, s, before the edge was used.
   [[nodiscard]] double host_minus_edge_s() const { return host_minus_edge_s_; }
-  /// Time of the last edge that was not doubled, and whole seconds of the source that passed since the one before.
+  /// Time of the last edge that was not doubled, and whole seconds of the source since the one before.
   [[nodiscard]] Span edge_time() const { return last_label_; }
   [[nodiscard]] std::int64_t seconds_since_previous() const { return seconds_since_previous_; }
 
@@ -73,8 +73,8 @@ class EdgeFilter {
   double rate_ = 0.0;
   double p00_ = 0.0, p01_ = 0.0, p11_ = 0.0;
 
-  Span last_host_{0};   ///< of the last edge that was not doubled
-  Span last_label_{0};  ///< its time as the source means it
+  Span last_host_{0};   ///< time of the last edge that was not doubled
+  Span last_label_{0};  ///< its time by the source's count of seconds
   std::int64_t seconds_since_previous_ = 0;
   double host_minus_edge_s_ = 0.0;
   int rejected_in_a_row_ = 0;

@@ -1,5 +1,6 @@
 #pragma once
-// Where edges of a 1PPS come from. A kind of source is a file beside this one and one line in edge_sources.cpp.
+// Sources of the edges of a 1PPS. A kind of source is a class of its own and one line in the list of
+// edge_source_kinds().
 
 #include <chrono>
 #include <cstdint>
@@ -15,9 +16,9 @@
 namespace vbar::grand {
 
 struct Edge {
-  std::optional<fsw::GpsTime> gps = std::nullopt;  ///< if the source labels its edges; a whole second
+  std::optional<fsw::GpsTime> gps = std::nullopt;  ///< label, if the source labels its edges; a whole second
   engine::WallClock::Span monotonic{0};            ///< CLOCK_MONOTONIC (std::chrono::steady_clock) at the edge
-  std::uint32_t count = 0;                         ///< as numbered by the source
+  std::uint32_t count = 0;                         ///< number given by the source
 };
 
 class EdgeSource {
@@ -27,35 +28,35 @@ class EdgeSource {
   EdgeSource& operator=(const EdgeSource&) = delete;
   virtual ~EdgeSource() = default;
 
-  /// The next edge; empty if there is none by `deadline`. With a deadline that has passed, returns at once: an edge
-  /// that has been waiting, or nothing. Throws std::runtime_error, one sentence with the device, if the source has
+  /// Returns the next edge; empty if there is none by `deadline`. With a deadline that has passed, returns at once an
+  /// edge that has been waiting, or nothing. Throws std::runtime_error, one sentence with the device, if the source has
   /// failed.
   virtual std::optional<Edge> next(std::chrono::steady_clock::time_point deadline) = 0;
 
-  /// "socket:/run/bench/pps.sock"
+  /// Returns "socket:/run/bench/pps.sock".
   [[nodiscard]] virtual std::string description() const = 0;
-  /// Datagrams that were not edges.
+  /// Number of datagrams that were not edges.
   [[nodiscard]] virtual std::uint64_t malformed() const { return 0; }
 };
 
 struct EdgeSourceKind {
-  std::string_view name;  ///< what stands before the colon in a mission
+  std::string_view name;  ///< text before the colon in a mission
   std::string_view form;  ///< as shown to users: "kernel:DEVICE"
   bool has_device = false;
-  /// `device`: the text after the colon. Throws std::runtime_error.
+  /// Opens a source. `device` is the text after the colon. Throws std::runtime_error.
   std::unique_ptr<EdgeSource> (*make)(const std::string& device);
 };
 
-/// All kinds of this program.
+/// Returns all kinds of this program.
 [[nodiscard]] std::span<const EdgeSourceKind* const> edge_source_kinds();
 
-/// The kind of "kernel:/dev/pps0"; null if the name is unknown, or the device is missing or superfluous.
+/// Returns the kind of "kernel:/dev/pps0"; null if the name is unknown, or the device is missing or superfluous.
 [[nodiscard]] const EdgeSourceKind* find_edge_source(std::string_view text);
 
-/// Opens the source. Throws std::runtime_error; for an unknown one with the list of the known.
+/// Opens the source. Throws std::runtime_error; for an unknown source with the list of the known ones.
 [[nodiscard]] std::unique_ptr<EdgeSource> make_edge_source(std::string_view text);
 
-/// "kernel:DEVICE", "socket:PATH", "timer"
+/// Returns "kernel:DEVICE", "socket:PATH", "timer".
 [[nodiscard]] std::string edge_source_forms();
 
 }  // namespace vbar::grand

@@ -1,5 +1,5 @@
 #pragma once
-// Edges that the bench emulator announces on a Unix datagram socket (../wire/pps_datagram.h).
+// Edges that the emulator announces on a Unix datagram socket (../wire/pps_datagram.h).
 
 #include "hil_drivers/grand/pps/edge_source.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// Edges every second of the host's own clock, for a bench without a PPS line.
+// Edges every second of the host's own clock, for a testbed without a PPS line.
 
 #include "hil_drivers/grand/pps/edge_source.h"
 

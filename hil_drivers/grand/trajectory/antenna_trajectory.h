@@ -1,5 +1,5 @@
 #pragma once
-// The motion of the true phase centre of one spacecraft's antenna, from the truth about its body.
+// Motion of the true phase centre of one spacecraft's antenna, from the truth about its body.
 
 #include <cstdint>
 #include <string_view>
@@ -14,19 +14,20 @@ namespace vbar::grand {
 
 class AntennaTrajectory {
  public:
-  /// The errors of the body frame are those the digital twin draws for the same seed and spacecraft. `start`: time of
-  /// the first sample.
+  /// The errors of the body frame are those the digital twin draws for the same seed and spacecraft. `start` is the
+  /// time of the first sample.
   AntennaTrajectory(const twins::gnss::BodyFrameSettings& settings, const ReceiverEpochs& epochs, fsw::GpsTime start,
                     std::uint64_t seed, std::string_view spacecraft);
 
-  /// All derivatives are those of one curve: of the centre of mass, its acceleration and the jerk of the two-body
-  /// problem; of the arm, rotation at the body's rate and angular acceleration (constant from sample to sample) and the
-  /// noise of the phase centre. Without an angular acceleration in the truth it counts as zero. Throws
-  /// std::invalid_argument if the truth has no acceleration, is not finite or lies before the start.
+  /// Returns the sample of the present truth. All derivatives are those of one curve. The centre of mass contributes
+  /// its acceleration and the jerk of the two-body problem; the arm contributes rotation at the body's rate and angular
+  /// acceleration (constant from sample to sample) and the noise of the phase centre. An angular acceleration missing
+  /// in the truth counts as zero. Throws std::invalid_argument if the truth has no acceleration, is not finite or lies
+  /// before the start.
   TrajectorySample at(const twins::gnss::BodyTruth& truth);
 
   [[nodiscard]] const twins::gnss::BodyFrameErrors& errors() const { return errors_; }
-  /// From the axes of the body to those of the antenna.
+  /// Rotation from the axes of the body to those of the antenna.
   [[nodiscard]] const fsw::Matrix3& R_antenna_body() const { return R_antenna_body_; }
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-// The noise of the antenna's phase centre (Appendix A of the paper: 1 mm on each axis at each epoch of the receiver) as
-// a smooth motion: between the values of two epochs the phase centre moves along a quintic with zero velocity and
+// Noise of the antenna's phase centre (Appendix A of the paper: 1 mm on each axis at each epoch of the receiver) as a
+// smooth motion: between the values of two epochs the phase centre moves along a quintic with zero velocity and
 // acceleration at both ends. A step would be a step of every carrier phase.
 
 #include <array>
@@ -25,7 +25,7 @@ class PhaseCentreNoise {
   /// Throws std::invalid_argument for a period that is not positive.
   PhaseCentreNoise(double sigma_m, const ReceiverEpochs& epochs, std::uint64_t seed, std::string_view spacecraft);
 
-  /// Displacement in body axes, m, and its three derivatives with respect to time.
+  /// Returns the displacement in body axes, m, and its three derivatives with respect to time.
   std::array<fsw::Vector3, 4> at(fsw::GpsTime time);
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// The names of the common byte formats, for the formats of this testbed.
+// Names of the common byte formats, for the formats of this testbed.
 
 #include "hil_drivers/wire/bytes.h"
 #include "hil_drivers/wire/line_buffer.h"

@@ -13,13 +13,13 @@ struct Calendar {
   friend bool operator==(const Calendar&, const Calendar&) = default;
 };
 
-/// Of the whole second that contains `time`.
+/// Returns the date of the whole second that contains `time`.
 Calendar calendar_of(fsw::GpsTime time);
 
-/// Throws WireError for a date that does not exist or lies outside 1980-01-06 to 2200.
+/// Returns the time of a date. Throws WireError for a date that does not exist or lies outside 1980-01-06 to 2200.
 fsw::GpsTime time_of(const Calendar& calendar);
 
-/// "2011-07-19 16:00:00"
+/// Returns "2011-07-19 16:00:00".
 std::string text_of(const Calendar& calendar);
 
 }  // namespace vbar::grand::wire

@@ -1,6 +1,5 @@
 #pragma once
-// An edge of the generator's 1PPS as the bench emulator announces it on a Unix datagram socket: 20 bytes,
-// little-endian.
+// Edge of the generator's 1PPS as the emulator announces it on a Unix datagram socket: 20 bytes, little-endian.
 //
 //    0  i64  GPS time of the edge, ns
 //    8  i64  CLOCK_MONOTONIC of the edge, ns
@@ -25,12 +24,12 @@ struct PpsDatagram {
 };
 
 inline constexpr std::size_t kPpsDatagramBytes = 20;
-/// Both times lie in [0, kPpsTimeLimit_ns), so that differences and sums of two cannot overflow.
+/// Limit of both times: they lie in [0, kPpsTimeLimit_ns), so that differences and sums of two cannot overflow.
 inline constexpr std::int64_t kPpsTimeLimit_ns = std::int64_t{1} << 62;
 
 [[nodiscard]] std::array<std::uint8_t, kPpsDatagramBytes> encode_pps_datagram(const PpsDatagram& datagram);
 
-/// Empty for any other length and for a time outside its limits.
+/// Decodes a datagram. Empty for any other length and for a time outside its limits.
 [[nodiscard]] std::optional<PpsDatagram> decode_pps_datagram(std::span<const std::uint8_t> bytes);
 
 }  // namespace vbar::grand::wire

@@ -17,10 +17,10 @@
 namespace vbar::grand::wire {
 
 inline constexpr std::uint16_t kSimgenPort = 15650;
-inline constexpr std::size_t kSimgenMotBytes = 216;        ///< of the public structure, 8-aligned
+inline constexpr std::size_t kSimgenMotBytes = 216;        ///< size of the public structure, 8-aligned
 inline constexpr std::size_t kSimgenMotPackedBytes = 212;  ///< without its padding
 
-/// The status in every reply.
+/// Status in every reply.
 enum class SimgenStatus {
   kNoScenario = 0,
   kLoading = 1,
@@ -40,47 +40,48 @@ struct SimgenMotion {
   TrajectorySample sample;
 };
 
-/// 216 bytes; the angular jerk is zero. Throws WireError for a sample that is not finite or not on a whole millisecond.
+/// Encodes 216 bytes; the angular jerk is zero. Throws WireError for a sample that is not finite or not on a whole
+/// millisecond.
 Bytes encode_mot(const SimgenMotion& motion);
-/// 216 or 212 bytes. Throws WireError.
+/// Decodes 216 or 212 bytes. Throws WireError.
 SimgenMotion decode_mot(std::span<const std::uint8_t> datagram);
 
 // Lines, without line end.
-/// "0 00:00:00.100,MOT,v1_m1,x,y,z,..." with 24 numbers that read back exactly.
+/// Returns "0 00:00:00.100,MOT,v1_m1,x,y,z,..." with 24 numbers that read back exactly.
 std::string mot_line(const SimgenMotion& motion);
-/// "START_TIME,19-JUL-2011 16:00:00,02:15:00"
+/// Returns "START_TIME,19-JUL-2011 16:00:00,02:15:00".
 std::string start_time_line(fsw::GpsTime start, fsw::Duration duration);
 
-/// A command line taken apart: "[timestamp,]NAME[,argument...]".
+/// Parts of a command line: "[timestamp,]NAME[,argument...]".
 struct SimgenCommand {
-  std::optional<fsw::Duration> time = std::nullopt;  ///< of a timestamp other than "-"
+  std::optional<fsw::Duration> time = std::nullopt;  ///< a timestamp other than "-"
   std::string name = {};                             ///< upper case
   std::vector<std::string> arguments = {};
 };
-/// Throws WireError.
+/// Splits a command line. Throws WireError.
 SimgenCommand parse_simgen_command(std::string_view line);
-/// Of a command MOT. Throws WireError.
+/// Returns the motion of a command MOT. Throws WireError.
 SimgenMotion motion_of(const SimgenCommand& command);
 struct SimgenStart {
   fsw::GpsTime time;
   fsw::Duration duration;
 };
-/// Of a command START_TIME. Throws WireError.
+/// Returns the start of a command START_TIME. Throws WireError.
 SimgenStart start_of(const SimgenCommand& command);
 
 struct SimgenReply {
   int status = 0;
   std::string data = {};
-  std::string error = {};  ///< of <error> or <fatal>
+  std::string error = {};  ///< text of <error> or <fatal>
 };
 std::string encode_reply(const SimgenReply& reply);
-/// A whole message, "<msg> ... </msg>". Throws WireError.
+/// Decodes a whole message, "<msg> ... </msg>". Throws WireError.
 SimgenReply parse_reply(std::string_view message);
-/// Length of the first whole message of a stream; 0 if it is not complete. Throws WireError if the stream is longer
-/// than a reply can be.
+/// Returns the length of the first whole message of a stream; 0 if it is not complete. Throws WireError if the stream
+/// is longer than a reply can be.
 std::size_t reply_length(std::string_view stream);
 
-/// Seconds of a time into run as in the data of a reply to TIME. Throws WireError.
+/// Returns the time into run in the data of a reply to TIME. Throws WireError.
 fsw::Duration time_of_data(std::string_view data);
 
 }  // namespace vbar::grand::wire

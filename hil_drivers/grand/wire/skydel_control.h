@@ -27,16 +27,16 @@ inline constexpr int kSkydelSubStateIdleWithoutConfig = 1, kSkydelSubStateIdle =
                      kSkydelSubStateArmed = 8, kSkydelSubStateError = 10, kSkydelSubStateSyncStart = 13;
 inline constexpr std::string_view kSkydelStreaming = "Streaming RF";
 
-/// One frame of either direction.
+/// Frame of either direction.
 struct SkydelFrame {
   SkydelFrameKind kind = SkydelFrameKind::kCommand;
-  Json json = {};                 ///< an object, of a command or a result
-  std::uint32_t api_version = 0;  ///< of an API version
+  Json json = {};                 ///< object of a command or a result
+  std::uint32_t api_version = 0;  ///< number in a frame of the API version
 };
 
-/// A command; `fields` is an object.
+/// Returns a command; `fields` is an object.
 Json skydel_command(std::string_view name, std::string_view uuid, const Json& fields = Json::object());
-/// A result to `command`.
+/// Returns a result to `command`.
 Json skydel_result(std::string_view name, const Json& command, const Json& fields = Json::object());
 Json skydel_error(const Json& command, std::string_view message);
 
@@ -49,13 +49,13 @@ Bytes encode_api_version(std::uint32_t version);
 class SkydelFrames {
  public:
   void append(std::span<const std::uint8_t> bytes);
-  /// The next complete frame. Throws WireError for one that does not decode; the stream has no frame boundary to
-  /// continue at then.
+  /// Returns the next complete frame. Throws WireError for one that does not decode; after it the stream has no frame
+  /// boundary at which to continue.
   std::optional<SkydelFrame> next();
 
  private:
   Bytes buffer_;
-  std::size_t position_ = 0;  ///< of the next frame in the buffer
+  std::size_t position_ = 0;  ///< position of the next frame in the buffer
   std::uint64_t consumed_ = 0;
 };
 
@@ -66,7 +66,7 @@ std::int64_t integer_field(const Json& json, std::string_view field, std::int64_
 double number_field(const Json& json, std::string_view field);
 std::string text_field(const Json& json, std::string_view field);
 
-/// {"Spec": "UTC", "Year": ...}: GPS time in spite of its Spec.
+/// Returns {"Spec": "UTC", "Year": ...}: GPS time in spite of its Spec.
 Json skydel_date(fsw::GpsTime time);
 fsw::GpsTime skydel_date_field(const Json& json, std::string_view field);
 

@@ -16,15 +16,15 @@ inline constexpr std::size_t kSkydelMaxHilBytes = 512;  ///< a sample with a nam
 struct SkydelHello {};
 struct SkydelBye {};
 
-/// A position (05), with attitude (06), with derivatives (07), with both (08).
+/// Sample of the trajectory: a position (05), with attitude (06), with derivatives (07), with both (08).
 struct SkydelSample {
-  TrajectorySample sample;    ///< what the datagram does not carry is zero
-  int derivatives = 0;        ///< of the position: 0, or 1 to 3
+  TrajectorySample sample;    ///< values that the datagram does not carry are zero
+  int derivatives = 0;        ///< number of derivatives of the position: 0, or 1 to 3
   bool has_attitude = false;  ///< with as many derivatives
-  std::string name = {};      ///< of a jammer; empty for the vehicle
+  std::string name = {};      ///< name of a jammer; empty for the vehicle
 };
 
-/// Sent back to the sender of the samples (03).
+/// State that is sent back to the sender of the samples (03).
 struct SkydelVehicleInfo {
   std::uint64_t time_ms = 0;
   fsw::Vector3 position_ecef_m = fsw::Vector3::Zero();
@@ -38,14 +38,15 @@ using SkydelHilMessage = std::variant<SkydelHello, SkydelBye, SkydelVehicleInfo,
 
 Bytes encode_hello();
 Bytes encode_bye();
-/// 08 with three derivatives, 206 bytes. The angular jerk is zero. Throws WireError for a sample that is not finite.
+/// Encodes a sample (08) with three derivatives, 206 bytes. The angular jerk is zero. Throws WireError for a sample
+/// that is not finite.
 Bytes encode_sample(const TrajectorySample& sample);
 Bytes encode_vehicle_info(const SkydelVehicleInfo& info);
 
-/// Any datagram of either direction. Throws WireError.
+/// Decodes any datagram of either direction. Throws WireError.
 SkydelHilMessage decode_hil(std::span<const std::uint8_t> datagram);
 
-/// Refuses a sample with a number that is not finite or a time outside 0 to 100 days; `what` names the message.
+/// Rejects a sample with a number that is not finite or a time outside 0 to 100 days; `what` names the message.
 void check_sample(const TrajectorySample& sample, std::string_view what);
 
 }  // namespace vbar::grand::wire

@@ -215,7 +215,7 @@ std::optional<fsw::GpsTime> start_time_of(const NamedValues& values) {
     return time_of({static_cast<int>(whole("year", 9999)), whole("month", 12), whole("day", 31), whole("hour", 23),
                     whole("minute", 59), whole("second", 59)});
   if (!values.contains("gps_week")) return std::nullopt;
-  constexpr double kLastWeek = 11479;  // of the year 2199
+  constexpr double kLastWeek = 11479;  // in the year 2199
   return fsw::GpsTime{} + fsw::duration_of_seconds(std::int64_t{whole("gps_week", kLastWeek)} * kSecondsPerWeek +
                                                    std::int64_t{whole("gps_tow_s", 604799.0)});
 }

@@ -1,5 +1,5 @@
 #pragma once
-// A generator without a public interface document: what its datagrams and control lines look like is part of the
+// Format of a generator without a public interface document: its datagrams and control lines are described in the
 // mission file. Both ends use the same description.
 
 #include <array>
@@ -18,7 +18,7 @@
 namespace vbar::grand::wire {
 
 enum class FieldType { kU8, kI8, kU16, kI16, kU32, kI32, kU64, kI64, kF32, kF64 };
-/// How the vehicle of a datagram is identified: by a field of it, or by the port that it is sent to.
+/// Identification of the vehicle of a datagram: by a field of the datagram, or by the port to which it is sent.
 enum class VehicleBy { kField, kPort };
 
 // Names in mission files.
@@ -37,16 +37,16 @@ inline constexpr std::array<std::pair<std::string_view, ByteOrder>, 2> kByteOrde
 inline constexpr std::array<std::pair<std::string_view, VehicleBy>, 2> kVehicleBys = {
     {{"field", VehicleBy::kField}, {"port", VehicleBy::kPort}}};
 
-/// One field of a binary datagram.
+/// Field of a binary datagram.
 struct TemplateField {
-  std::string value = {};  ///< one of template_values(), or empty: the constant
+  std::string value = {};  ///< one of template_values(); empty: the constant
   double constant = 0.0;
   FieldType type = FieldType::kF64;
   double scale = 1.0;  ///< on the wire: value * scale, rounded for integer types
 };
 
 struct TemplateFormat {
-  std::vector<TemplateField> fields = {};  ///< of the binary datagram, if `text` is empty
+  std::vector<TemplateField> fields = {};  ///< fields of the binary datagram, if `text` is empty
   ByteOrder byte_order = ByteOrder::kLsbFirst;
   std::string text = {};  ///< pattern of an ASCII datagram: "{time_s:.3f},{position_ecef_x:.4f}\n"
   VehicleBy vehicle_by = VehicleBy::kField;
@@ -55,42 +55,44 @@ struct TemplateFormat {
   std::vector<std::string> start_lines = {};
   std::vector<std::string> stop_lines = {};
   std::string accepted_answer = "OK";        ///< beginning of the answer to an accepted line
-  std::string progress_line = {};            ///< asks how far {vehicle} has been flown; empty: it cannot be asked
+  std::string progress_line = {};            ///< question how far {vehicle} has been moved; empty: it cannot be asked
   std::string progress_answer = "{time_s}";  ///< pattern of the answer
 };
 
-/// Values of a datagram: vehicle (from 1), time_s, time_ms, position_ecef_x, ...
+/// Names of the values of a datagram: vehicle (from 1), time_s, time_ms, position_ecef_x, ...
 [[nodiscard]] const std::vector<std::string_view>& template_values();
-/// Values of control lines: vehicle, vehicles, year, month, day, hour, minute, second, gps_week, gps_tow_s, time_s.
+/// Names of the values of control lines: vehicle, vehicles, year, month, day, hour, minute, second, gps_week,
+/// gps_tow_s, time_s.
 [[nodiscard]] const std::vector<std::string_view>& control_values();
-/// Those of a start time.
+/// Returns the values of control lines for a start time.
 [[nodiscard]] NamedValues control_values_of(fsw::GpsTime start, std::size_t vehicles);
-/// The start time that a line states, by date or by week; empty if it states none. Throws WireError.
+/// Returns the start time that a line states, by date or by week; empty if it states none. Throws WireError.
 [[nodiscard]] std::optional<fsw::GpsTime> start_time_of(const NamedValues& values);
 
-/// A format that has been checked and prepared.
+/// Codec of a format that has been checked and prepared.
 class TemplateCodec {
  public:
-  /// Throws WireError, one sentence: an unknown name with the list of the known ones, a format without time, position
-  /// or vehicle, a pattern that cannot be read back.
+  /// Prepares the format. Throws WireError, one sentence: an unknown name with the list of the known ones, a format
+  /// without time, position or vehicle, a pattern that cannot be read back.
   explicit TemplateCodec(TemplateFormat format);
 
   [[nodiscard]] const TemplateFormat& format() const { return format_; }
 
-  /// `vehicle` from 0. Throws WireError for a sample that is not finite or does not fit into its type.
+  /// Encodes a sample; `vehicle` counts from 0. Throws WireError for a sample that is not finite or does not fit into
+  /// its type.
   [[nodiscard]] Bytes encode(std::size_t vehicle, const TrajectorySample& sample) const;
 
   struct Received {
     std::optional<std::size_t> vehicle = std::nullopt;  ///< from 0, if the datagram carries it
-    TrajectorySample sample = {};                       ///< what it does not carry is zero
+    TrajectorySample sample = {};                       ///< values that it does not carry are zero
   };
-  /// Throws WireError.
+  /// Decodes a datagram. Throws WireError.
   [[nodiscard]] Received decode(std::span<const std::uint8_t> datagram) const;
 
   [[nodiscard]] const std::vector<TextPattern>& prepare_lines() const { return prepare_; }
   [[nodiscard]] const std::vector<TextPattern>& start_lines() const { return start_; }
   [[nodiscard]] const std::vector<TextPattern>& stop_lines() const { return stop_; }
-  /// Empty if progress cannot be asked.
+  /// Pattern of the question for progress; empty if progress cannot be asked.
   [[nodiscard]] const std::optional<TextPattern>& progress_line() const { return progress_; }
   [[nodiscard]] const TextPattern& progress_answer() const { return progress_answer_; }
 

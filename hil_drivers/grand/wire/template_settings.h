@@ -9,7 +9,7 @@
 
 namespace vbar::grand::wire {
 
-/// Leaves other keys of the table unread; the caller finishes it. Throws MissionError.
+/// Reads the description. Other keys of the table are left unread; the caller finishes it. Throws MissionError.
 TemplateFormat read_template_format(const mission::TableReader& section);
 
 }  // namespace vbar::grand::wire

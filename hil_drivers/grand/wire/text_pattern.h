@@ -20,17 +20,17 @@ class TextPattern {
   /// are braces, "\n", "\r" and "\t" (backslash and letter) control characters. Throws WireError with the position.
   TextPattern(std::string_view pattern, const std::vector<std::string_view>& known);
 
-  /// Throws WireError if a value is missing or not finite.
+  /// Returns the text of these values. Throws WireError if a value is missing or not finite.
   [[nodiscard]] std::string format(const NamedValues& values) const;
-  /// The values in a text of this form. Throws WireError with the position.
+  /// Returns the values in a text of this form. Throws WireError with the position.
   [[nodiscard]] NamedValues parse(std::string_view text) const;
-  /// Whether `text` has this form.
+  /// Returns true if `text` has this form.
   [[nodiscard]] bool matches(std::string_view text) const;
 
   [[nodiscard]] std::vector<std::string> names() const;
 
  private:
-  /// A literal text, followed by a place unless `name` is empty.
+  /// Literal text, followed by a place unless `name` is empty.
   struct Piece {
     std::string literal = {};
     std::string name = {};
@@ -41,8 +41,8 @@ class TextPattern {
   std::vector<Piece> pieces_;
 };
 
-/// A number at the beginning of `text`, without white space before it; its length is put into `length`, 0 if there is
-/// none. Accepts a leading '+'.
+/// Returns a number at the beginning of `text`, without white space before it; `length` receives its length, 0 if there
+/// is none. Accepts a leading '+'.
 double leading_number(std::string_view text, std::size_t& length);
 
 }  // namespace vbar::grand::wire

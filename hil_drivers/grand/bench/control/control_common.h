@@ -1,5 +1,5 @@
 #pragma once
-// What the servers of the three protocols share.
+// Common parts of the servers of the three protocols.
 
 #include <cstdint>
 #include <memory>
@@ -13,14 +13,14 @@
 
 namespace vbar::grand::bench {
 
-/// A command that is not executed: one sentence for the client.
+/// Error of a command that is not executed: one sentence for the client.
 class Refusal : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
 enum class FaultEffect { kNone, kRefusal, kNoAnswer, kClosing };
-/// What the scenario has in store for this command; counted.
+/// Returns the fault of the scenario for this command; it is counted.
 FaultEffect fault_of(const ControlFaults& faults, std::string_view command, ControlStatistics& statistics);
 
 inline std::uint16_t port_at(const std::vector<std::uint16_t>& ports, std::size_t index) {

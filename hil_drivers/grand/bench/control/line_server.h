@@ -1,5 +1,5 @@
 #pragma once
-// A server whose commands are lines on one TCP port, and whose samples come by UDP: the common part of SimGEN and the
+// Server whose commands are lines on one TCP port, and whose samples come by UDP: the common part of SimGEN and the
 // template.
 
 #include <functional>
@@ -34,30 +34,30 @@ class LineServer : public ControlServers {
  protected:
   using Answer = std::function<void(const std::string& text)>;
 
-  /// Called by the derived class when it is complete.
+  /// Begins to serve. The derived class calls it when it is complete.
   void serve();
 
-  // A line is executed by execute(), which throws Refusal or WireError; empty: `later` gives the answer.
+  // Executes a line; throws Refusal or WireError. Empty: `later` gives the answer.
   virtual std::optional<std::string> execute(const std::string& line, const Answer& later) = 0;
-  /// The name of a line's command for ControlFaults.
+  /// Returns the name of a line's command for ControlFaults.
   [[nodiscard]] virtual std::string command_of(const std::string& line) const = 0;
   [[nodiscard]] virtual std::string refusal_of(const std::string& reason) const = 0;
-  /// Throws WireError.
+  /// Processes a datagram. Throws WireError.
   virtual void take_datagram(std::size_t port, std::span<const std::uint8_t> datagram) = 0;
 
-  // A run. Samples before it begins wait for the engine to be armed.
+  // Steps of a run. Samples before its beginning wait for the engine to be armed.
   void take_sample(std::size_t vehicle, const TrajectorySample& sample);
   void begin_configuration(fsw::GpsTime start);
   void arm();
-  /// Starts at the next edge of the 1PPS, then calls `done`, with the reason of a refusal if it is not empty.
+  /// Starts at the next edge of the 1PPS, then calls `done`, with the reason of a rejection if it is not empty.
   void start_at_edge(std::function<void(const std::string& refusal)> done);
   void stop_run();
   enum class Stage { kIdle, kConfigured, kArmed, kRunning, kEnded };
-  /// As the engine has it, which may have stopped or restarted by itself.
+  /// Stage of the engine, which may have stopped or restarted by itself.
   [[nodiscard]] Stage stage() const;
   [[nodiscard]] Engine& engine() const { return engine_; }
-  /// Time up to which the vehicles have been flown: of those that are behind their last sample the earliest, otherwise
-  /// the latest of all.
+  /// Time up to which the vehicles have moved: the earliest of those that are behind their last sample; if there is
+  /// none, the latest of all.
   [[nodiscard]] fsw::Duration time_into_run() const;
 
  private:
@@ -74,7 +74,7 @@ class LineServer : public ControlServers {
   Stage stage_ = Stage::kIdle;
   std::uint64_t run_ = 0;  ///< counts arming and stopping, so that an edge of an earlier run has no effect
   std::vector<std::optional<TrajectorySample>> last_samples_;
-  std::shared_ptr<int> alive_ = std::make_shared<int>(0);  ///< gone when this object is: the engine keeps callbacks
+  std::shared_ptr<int> alive_ = std::make_shared<int>(0);  ///< expires with this object: the engine keeps callbacks
 };
 
 }  // namespace vbar::grand::bench

@@ -1,6 +1,6 @@
 #pragma once
-// The commands of emulated Skydel instances, without sockets: one instance per vehicle, the first is the main instance
-// of the start by 1PPS, the others are its workers.
+// Commands of emulated Skydel instances, without sockets: one instance per vehicle, the first is the main instance of
+// the start by 1PPS, the others are its workers.
 
 #include <cstdint>
 #include <functional>
@@ -22,14 +22,14 @@ class SkydelCommands {
 
   SkydelCommands(Engine& engine, const ControlSettings& settings, std::vector<std::uint16_t> hil_ports);
 
-  /// Executes a command of an instance. The result, ErrorResult for anything that a real instance refuses; empty if
-  /// `later` gives it.
+  /// Executes a command of an instance. Returns the result, ErrorResult for anything that a real instance rejects;
+  /// empty if `later` gives it.
   std::optional<Json> execute(std::size_t instance, const Json& command, const Answer& later);
 
-  /// Whether a sample for this instance's vehicle is expected.
+  /// Returns true if a sample for this instance's vehicle is expected.
   [[nodiscard]] bool expects_samples(std::size_t instance);
   [[nodiscard]] bool sends_vehicle_info(std::size_t instance) const { return instances_[instance].vehicle_info; }
-  /// Notes the state of extrapolation, of which the worst since it was last asked is reported.
+  /// Records the state of extrapolation. The worst state since the last question is reported.
   void note_progress(std::size_t instance);
 
  private:
@@ -60,7 +60,7 @@ class SkydelCommands {
   };
   static const std::vector<Command>& commands();
 
-  // Handlers: the result, or a Refusal.
+  // Handlers return the result or throw a Refusal.
   std::optional<Json> get_hil_port(const Call& call);
   std::optional<Json> get_engine_latency(const Call& call);
   std::optional<Json> get_streaming_buffer(const Call& call);
@@ -84,14 +84,14 @@ class SkydelCommands {
   std::optional<Json> get_extrapolation(const Call& call);
   std::optional<Json> stop(const Call& call);
 
-  /// The engine may have stopped or restarted by itself.
+  /// Adopts the engine's state, which may have stopped or restarted by itself.
   void follow_engine();
   [[nodiscard]] Instance& of(const Call& call) { return instances_[call.instance]; }
-  /// The instance, which must have a configuration and be idle.
+  /// Returns the instance, which must have a configuration and be idle.
   Instance& configurable(const Call& call);
   void require_main(const Call& call) const;
   void require_running(const Call& call) const;
-  /// What an instance lacks before it can be armed; empty if nothing.
+  /// Returns what an instance lacks before it can be armed; empty if nothing.
   [[nodiscard]] std::string missing(std::size_t index) const;
   [[nodiscard]] static Json success(const Call& call) { return wire::skydel_result("SuccessResult", call.command); }
 
@@ -101,7 +101,7 @@ class SkydelCommands {
   std::vector<Instance> instances_;
   Stage stage_ = Stage::kIdle;
   std::uint64_t run_ = 0;  ///< counts arming and stopping, so that an edge of an earlier run has no effect
-  /// Gone when this object is: the engine keeps callbacks.
+  /// Expires with this object: the engine keeps callbacks.
   std::shared_ptr<int> alive_ = std::make_shared<int>(0);
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// The whole bench: generator, receivers, their lines, control servers, edges and faults in one directory and one event
-// loop.
+// Complete emulator: generator, receivers, their lines, control servers, edges and faults in one directory and one
+// event loop.
 
 #include <filesystem>
 #include <memory>
@@ -16,11 +16,11 @@ namespace vbar::grand::bench {
 
 class Bench {
  public:
-  /// Makes everything and, when it listens, writes DIR/addresses.json. The directory is made if it does not exist.
+  /// Makes all parts and, when it listens, writes DIR/addresses.json. The directory is made if it does not exist.
   /// Throws std::runtime_error, std::invalid_argument; each one sentence.
   Bench(boost::asio::io_context& context, const Scenario& scenario, const std::filesystem::path& data_directory,
         std::filesystem::path directory, const ReceiverFactory& make_receiver);
-  /// Removes what it made, except the list of faults.
+  /// Removes the files it made, except the list of faults.
   ~Bench();
   Bench(const Bench&) = delete;
   Bench& operator=(const Bench&) = delete;

@@ -1,10 +1,11 @@
 #pragma once
-// The emulated generator: vehicles flown along the samples received, in lock-step or in real time.
+// Emulated generator: vehicles are moved along the samples received, in lock-step or in real time.
 //
-// Lock-step: the arrival of a sample flies its vehicle exactly to the newest sample's time; nothing else advances it,
-// and no clock is read. Real time: generator time t is the host's CLOCK_MONOTONIC t after the start, and what has been
-// computed lags behind it by the engine's latency; a sample whose time has been flown is late. With a speed factor, a
-// test of the bench itself, all times of the generator and its receivers pass faster, edges, latencies and bytes alike.
+// Lock-step: the arrival of a sample moves its vehicle exactly to the newest sample's time; nothing else advances it,
+// and no clock is read. Real time: generator time t is the host's CLOCK_MONOTONIC t after the start, and the computed
+// motion lags behind it by the engine's latency; a sample is late if the motion has passed its time. With a speed
+// factor, for tests of the emulator itself, all times of the generator and its receivers pass faster, edges, latencies
+// and bytes alike.
 
 #include <chrono>
 #include <filesystem>
@@ -32,7 +33,7 @@ class BenchEngine final : public Engine {
   BenchEngine(boost::asio::io_context& context, const Scenario& scenario, const std::filesystem::path& data_directory,
               const std::filesystem::path& directory, const ReceiverFactory& make_receiver);
 
-  // Of the interface.
+  // Interface of the control servers.
   [[nodiscard]] std::size_t vehicles() const override { return vehicles_.size(); }
   [[nodiscard]] EngineState state() const override { return state_; }
   [[nodiscard]] std::string error() const override { return error_; }
@@ -47,18 +48,18 @@ class BenchEngine final : public Engine {
   [[nodiscard]] TrajectorySample flown(std::size_t vehicle) const override;
   [[nodiscard]] std::int64_t system_time_at_pps0_ms() const override { return system_time_at_pps0_ms_; }
 
-  // For the program and the faults.
+  // Interface of the program and the faults.
   [[nodiscard]] Vehicle& vehicle(std::size_t index) { return *vehicles_[index]; }
-  /// The generator has flown this far for every vehicle; empty if it does not run.
+  /// Time up to which every vehicle has moved; empty if the generator does not run.
   [[nodiscard]] std::optional<fsw::Duration> time() const;
   [[nodiscard]] std::optional<fsw::Duration> time_of(std::size_t vehicle) const;
   [[nodiscard]] std::uint32_t edges_sent() const { return edges_sent_; }
   /// Ends the radiation with an error that the protocols report.
   void fail(std::string error);
-  /// From the next sample of the vehicle on.
+  /// Fault of samples, from the next sample of the vehicle on.
   enum class SampleFault { kLost, kDoubled, kSwapped };
   void damage_samples(std::size_t vehicle, SampleFault fault, std::uint64_t count);
-  /// Samples of the vehicle damaged so far.
+  /// Number of the vehicle's samples damaged so far.
   [[nodiscard]] std::uint64_t damaged_samples(std::size_t vehicle) const { return sample_faults_[vehicle].damaged; }
 
   std::function<void(const wire::PpsDatagram&)> on_edge;  ///< at each generator second
@@ -92,7 +93,7 @@ class BenchEngine final : public Engine {
   std::shared_ptr<twins::gnss::Constellation> constellation_;
   twins::gnss::AntennaPattern pattern_;
   std::vector<std::unique_ptr<Vehicle>> vehicles_;
-  std::vector<bool> warned_;  ///< of each vehicle: that its samples are missing
+  std::vector<bool> warned_;  ///< for each vehicle: a warning of missing samples was given
   std::vector<SampleFaults> sample_faults_;
 
   EngineState state_ = EngineState::kIdle;
@@ -105,7 +106,7 @@ class BenchEngine final : public Engine {
   // Real time.
   boost::asio::steady_timer timer_;
   Clock::time_point origin_;     ///< edges run freely from here on until the start
-  Clock::time_point last_edge_;  ///< of those
+  Clock::time_point last_edge_;  ///< last of those edges
   Clock::time_point last_tick_;
   Clock::time_point zero_;  ///< generator time 0
   std::int64_t system_time_at_pps0_ms_ = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// The emulated generator behind its control protocols: the servers (../control) call it, it calls them back.
+// Interface of the emulated generator for its control protocols: the servers (../control) call it, it calls them back.
 
 #include <cstddef>
 #include <functional>
@@ -12,9 +12,9 @@ namespace vbar::grand::bench {
 
 enum class EngineState { kIdle, kConfigured, kArmed, kStreaming, kStopped, kError };
 
-/// Counters of one vehicle.
+/// State and counters of one vehicle.
 struct VehicleReport {
-  fsw::Duration time;           ///< flown so far, since start
+  fsw::Duration time;           ///< end of the motion so far, since start
   int extrapolation = 0;        ///< 0 deterministic, 1 non-deterministic (no sample for 1 s), 2 snap
   double extrapolated_s = 0.0;  ///< time since the last sample
   std::uint64_t samples = 0, late = 0, doubled = 0, snaps = 0;
@@ -22,7 +22,7 @@ struct VehicleReport {
   std::uint64_t rejected = 0;      ///< not usable: not finite, not in an orbit, more than 10 s ahead
 };
 
-/// Single-threaded: everything is called from the event loop of the program.
+/// Engine of the generator. Single-threaded: everything is called from the event loop of the program.
 class Engine {
  public:
   Engine() = default;
@@ -34,9 +34,9 @@ class Engine {
   [[nodiscard]] virtual EngineState state() const = 0;
   [[nodiscard]] virtual std::string error() const = 0;
 
-  /// Discards what was configured and flown.
+  /// Discards configuration and motion.
   virtual void reset() = 0;
-  /// Each returns an empty text, or the reason of a refusal, one sentence.
+  /// Each command returns an empty text, or the reason of a rejection, one sentence.
   virtual std::string set_start_time(fsw::GpsTime time) = 0;
   virtual std::string set_join(fsw::Duration join) = 0;
   virtual std::string arm() = 0;
@@ -45,16 +45,16 @@ class Engine {
   virtual std::string start(fsw::Duration delay) = 0;
   virtual void stop() = 0;
 
-  /// A sample received; one whose time has passed is used from now on and counted as late.
+  /// Processes a sample; one whose time has passed is used from now on and counted as late.
   virtual void sample(std::size_t vehicle, const TrajectorySample& sample) = 0;
 
   [[nodiscard]] virtual VehicleReport report(std::size_t vehicle) const = 0;
-  /// Position flown at report().time: what a generator sends back as vehicle information.
+  /// Returns the motion at report().time: a generator sends it back as vehicle information.
   [[nodiscard]] virtual TrajectorySample flown(std::size_t vehicle) const = 0;
-  /// CLOCK_REALTIME, ms, at the PPS edge after which start() counts; 0 before it.
+  /// Returns CLOCK_REALTIME, ms, at the PPS edge after which start() counts; 0 before it.
   [[nodiscard]] virtual std::int64_t system_time_at_pps0_ms() const = 0;
 
-  /// Called by the engine whenever it has flown the vehicle further and all bytes that left the receiver by then have
+  /// Called by the engine whenever it has moved the vehicle further and all bytes that left the receiver by then have
   /// been written to its lines. Several servers may listen.
   std::vector<std::function<void(std::size_t vehicle)>> on_progress;
   /// Called at the next edge of the 1PPS, once, then forgotten (WaitAndResetPPS).

@@ -1,5 +1,5 @@
 #pragma once
-// The faults that the bench can inject, as its scenario file and its control line name them.
+// Faults that the emulator can inject, as its scenario file and its control line name them.
 
 #include <array>
 #include <cstddef>
@@ -15,7 +15,7 @@
 namespace vbar::grand::bench {
 
 enum class FaultKind {
-  kLineHangUp,           ///< the terminal of a port disappears; duration 0: for good
+  kLineHangUp,           ///< the terminal of a port disappears; duration 0: permanently
   kLineGarbage,          ///< random bytes between and in place of those for the host
   kLineHalfMessages,     ///< every second run of 200 bytes for the host is missing
   kLineFlood,            ///< 20 kB of random bytes every 100 ms
@@ -23,10 +23,10 @@ enum class FaultKind {
   kReceiverRefuses,      ///< commands of the host are spoiled, so that the receiver rejects them
   kReceiverBaud,         ///< the receiver's port changes its rate
   kHostBaud,             ///< the host's end of the line changes its rate
-  kReceiverOff,          ///< no power; duration 0: for good
+  kReceiverOff,          ///< no power; duration 0: permanently
   kRfOutage,             ///< no signal at the vehicle's RF output
   kCn0Drop,              ///< all signals of the vehicle weaker
-  kGeneratorError,       ///< it ends the radiation and reports an error
+  kGeneratorError,       ///< the generator ends the radiation and reports an error
   kGeneratorRefuses,     ///< a command of the control protocol is answered by an error
   kGeneratorUnanswered,  ///< ... is not answered
   kGeneratorDies,        ///< closes all connections and radiates nothing; after the duration it accepts connections
@@ -40,16 +40,16 @@ enum class FaultKind {
   kBenchExit,       ///< the program ends at once, with exit code 3
 };
 
-/// What the keys of a kind are beside time_s and kind.
+/// Keys of a kind beside time_s and kind.
 struct FaultRule {
   std::string_view name;
   FaultKind kind;
   bool has_vehicle;
   bool has_port;
   bool has_duration;
-  std::string_view value_key = {};  ///< of the number that belongs to it
+  std::string_view value_key = {};  ///< key of the number that belongs to it
   mission::Range value_range = {};
-  std::string_view text_key = {};  ///< of a text that belongs to it
+  std::string_view text_key = {};  ///< key of a text that belongs to it
 };
 
 inline constexpr std::array<FaultRule, 23> kFaultRules{{
@@ -84,19 +84,19 @@ constexpr const FaultRule& rule_of(FaultKind kind) {
 
 struct Fault {
   FaultKind kind = FaultKind::kBenchExit;
-  /// Generator time at which it is injected; empty: at once (before the run too).
+  /// Generator time of the injection; empty: at once (before the run too).
   std::optional<fsw::Duration> time = std::nullopt;
   fsw::Duration duration = {};  ///< 0: until the end
   std::size_t vehicle = 0;
   std::size_t port = 0;   ///< 0: COM1
-  double value = 0.0;     ///< of rule_of(kind).value_key
-  std::string text = {};  ///< of rule_of(kind).text_key
+  double value = 0.0;     ///< number of rule_of(kind).value_key
+  std::string text = {};  ///< text of rule_of(kind).text_key
 };
 
 /// Reads the keys time_s, kind, vehicle, port, duration_s, ... of a table and finishes it. Throws MissionError.
 Fault read_fault(const mission::TableReader& section, const std::vector<std::string>& vehicles);
 
-/// The same of one line of JSON with these keys. Throws MissionError.
+/// Reads one line of JSON with these keys. Throws MissionError.
 Fault fault_from_json(const std::string& line, const std::vector<std::string>& vehicles);
 
 }  // namespace vbar::grand::bench

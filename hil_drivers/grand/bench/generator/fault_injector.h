@@ -1,6 +1,6 @@
 #pragma once
-// Injects faults at their times or by command, and acknowledges each when it has taken effect: on the control line and
-// as one line of JSON in a file.
+// Injection of faults at their times or by command. Each is acknowledged when it has taken effect: on the control line
+// and as one line of JSON in a file.
 
 #include <cstdint>
 #include <filesystem>
@@ -19,8 +19,8 @@ namespace vbar::grand::bench {
 
 class FaultInjector {
  public:
-  /// What the faults act on; all outlive the injector. `file` gets a line for each fault that took effect. Throws
-  /// std::runtime_error if it cannot be made.
+  /// The faults act on the first three arguments, which outlive the injector. `file` receives a line for each fault
+  /// that took effect. Throws std::runtime_error if it cannot be made.
   FaultInjector(BenchEngine& engine, ControlServers& control, EdgeBroadcaster& edges,
                 const std::filesystem::path& file);
 
@@ -28,8 +28,8 @@ class FaultInjector {
   using Acknowledge = bench_lines::Acknowledge;
   void add(const Fault& fault, Acknowledge acknowledge = {});
 
-  /// Begins faults that are due, looks for their effects, ends those whose duration has passed. Called after every
-  /// 100 ms of the generator and in between.
+  /// Begins faults that are due, detects their effects, ends those whose duration has passed. Called after every 100 ms
+  /// of the generator and in between.
   void advance();
 
   /// Called for kBenchExit, after its acknowledgement.
@@ -43,7 +43,7 @@ class FaultInjector {
     bool has_effect = false;
     bool has_ended = false;
     fsw::Duration begun = {};  ///< generator time; 0 before the run
-    std::uint64_t count = 0;   ///< of the effect's counter when it began
+    std::uint64_t count = 0;   ///< value of the effect's counter when it began
   };
 
   [[nodiscard]] fsw::Duration time_for(const Fault& fault) const;

@@ -7,9 +7,9 @@ namespace {
 
 constexpr std::uint64_t kRun = 200;               ///< bytes of a message that pass, then as many that are missing
 constexpr std::size_t kGarbageBytes = 40;         ///< added every 100 ms
-constexpr double kGarbageProbability = 0.01;      ///< of a byte that is replaced
+constexpr double kGarbageProbability = 0.01;      ///< probability that a byte is replaced
 constexpr std::size_t kFloodBytes = 20'000;       ///< every 100 ms
-constexpr double kSyncProbability = 1.0 / 300.0;  ///< of a synchronisation pattern in random bytes
+constexpr double kSyncProbability = 1.0 / 300.0;  ///< probability of a sync pattern in random bytes
 
 }  // namespace
 

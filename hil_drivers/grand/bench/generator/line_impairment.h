@@ -20,10 +20,10 @@ class LineImpairment {
   LineImpairment(std::uint64_t seed, std::string_view name);
 
   void set(Kind kind, bool is_on) { on_[kind] = is_on; }
-  /// Bytes that it has added, changed or removed so far.
+  /// Number of bytes added, changed or removed so far.
   [[nodiscard]] std::uint64_t count(Kind kind) const { return counts_[kind]; }
 
-  /// Called every 100 ms with what the receiver sent.
+  /// Returns the impaired bytes; called every 100 ms with the bytes that the receiver sent.
   [[nodiscard]] std::vector<std::uint8_t> to_host(std::vector<std::uint8_t> bytes);
   [[nodiscard]] std::vector<std::uint8_t> from_host(std::span<const std::uint8_t> bytes);
 
@@ -34,7 +34,7 @@ class LineImpairment {
   engine::RandomStream stream_;
   std::array<bool, kKinds> on_{};
   std::array<std::uint64_t, kKinds> counts_{};
-  std::uint64_t position_ = 0;  ///< of the next byte for the host
+  std::uint64_t position_ = 0;  ///< position of the next byte for the host
 };
 
 }  // namespace vbar::grand::bench

@@ -1,6 +1,6 @@
 #pragma once
-// What the generator has on its RF output: a receiver with serial ports. The emulated OEM628 (../receiver) is one; a
-// receiver of another maker behind baseband samples may be another.
+// Interface of a receiver at an RF output of the generator: a receiver with serial ports. The emulated OEM628
+// (../receiver) is one; gnss-sdr behind baseband samples is another.
 
 #include <cstdint>
 #include <functional>
@@ -20,22 +20,22 @@ class ReceiverEnd {
   ReceiverEnd& operator=(const ReceiverEnd&) = delete;
   virtual ~ReceiverEnd() = default;
 
-  /// Lets the 100 ms of the block pass.
+  /// Advances the receiver by the 100 ms of the block.
   virtual void advance(const RfBlock& block) = 0;
-  /// Lets `span` pass without a generator.
+  /// Advances the receiver by `span` without a generator.
   virtual void idle(fsw::Duration span) = 0;
-  /// Whether an answer or a restart is under way.
+  /// Returns true while an answer or a restart is under way.
   [[nodiscard]] virtual bool busy() const = 0;
   virtual void listen(std::size_t port, std::span<const std::uint8_t> bytes, unsigned host_baud) = 0;
-  /// Bytes that have left the port by now, as a host at `host_baud` receives them.
+  /// Returns the bytes that have left the port by now, as a host at `host_baud` receives them.
   [[nodiscard]] virtual std::vector<std::uint8_t> speak(std::size_t port, unsigned host_baud) = 0;
   [[nodiscard]] virtual unsigned baud(std::size_t port) const = 0;
   virtual void power(bool on) = 0;
   virtual void set_cn0_offset_db(double offset_db) = 0;
 };
 
-/// Makes the receiver of the vehicle with this index. The constellation is that of the run's start time from the moment
-/// on at which the first block passes.
+/// Makes the receiver of the vehicle with this index. The constellation is that of the run's start time from the first
+/// block on.
 using ReceiverFactory = std::function<std::unique_ptr<ReceiverEnd>(
     std::size_t vehicle, std::shared_ptr<const twins::gnss::Constellation> constellation)>;
 

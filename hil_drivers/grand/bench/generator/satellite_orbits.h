@@ -1,6 +1,6 @@
 #pragma once
 // True motion and clock of the satellites as polynomials over 16 s, which several vehicles share: a hundred times
-// cheaper than the elements themselves, and within 1e-6 m of them (held by its test).
+// cheaper than the elements themselves, and within 1e-6 m of them (verified by its test).
 
 #include <array>
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace vbar::grand::bench {
 
-/// Earth-fixed frame of the same instant; derivatives relative to that rotating frame.
+/// Motion in the Earth-fixed frame of the same instant; derivatives relative to that rotating frame.
 struct SatelliteMotion {
   fsw::Vector3 position = fsw::Vector3::Zero();
   fsw::Vector3 velocity = fsw::Vector3::Zero();
@@ -25,14 +25,14 @@ struct SatelliteMotion {
 
 class SatelliteOrbits {
  public:
-  /// `start`: the origin of the times below.
+  /// `start` is the origin of the times below.
   SatelliteOrbits(std::shared_ptr<const twins::gnss::Constellation> constellation, fsw::GpsTime start);
 
   [[nodiscard]] std::size_t size() const { return constellation_->size(); }
   [[nodiscard]] const twins::gnss::Constellation& constellation() const { return *constellation_; }
   [[nodiscard]] fsw::GpsTime start() const { return start_; }
 
-  /// Motion at `time_s` since start, which may be negative. A pure function of its arguments.
+  /// Returns the motion at `time_s` since start, which may be negative. A pure function of its arguments.
   [[nodiscard]] SatelliteMotion at(std::size_t index, double time_s);
 
  private:
@@ -45,7 +45,8 @@ class SatelliteOrbits {
     std::int64_t interval = kNever;
     double coefficients[kQuantities][truth::kNodePoints] = {};
   };
-  /// Vehicles are flown at slightly different times, so that two neighbouring intervals are in use at once.
+  /// Polynomials in use. Vehicles are moved at slightly different times, so that two neighbouring intervals are in use
+  /// at once.
   struct Satellite {
     std::array<Piece, 2> pieces;  ///< by the parity of the interval
     std::array<Node, 8> nodes{};  ///< by the lowest bits of the node's number

@@ -1,5 +1,5 @@
 #pragma once
-// The scenario file of the bench: all that the emulated generator and receivers know beside what comes over the wires.
+// Scenario file of the emulator: all parameters of generator and receivers that do not come over the wires.
 
 #include <cstdint>
 #include <filesystem>
@@ -26,8 +26,8 @@ struct Scenario {
   std::uint64_t seed = 1;
   Pace pace = Pace::kLockStep;
   double speed_factor = 1.0;                 ///< real time: generator time per time of the host's clock
-  fsw::Duration engine_latency{40'000'000};  ///< real time: how far the motion lags behind the edges
-  fsw::Duration join{165'000'000};           ///< until a command sets it
+  fsw::Duration engine_latency{40'000'000};  ///< real time: lag of the motion behind the edges
+  fsw::Duration join{165'000'000};           ///< value until a command sets it
   fsw::Duration start_shift;                 ///< the radiated scenario's time minus the commanded one (a fault)
   double pps_jitter_ns = 0.0;                ///< one sigma of each edge
   twins::gnss::ConstellationSettings constellation;

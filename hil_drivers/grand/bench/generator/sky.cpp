@@ -184,7 +184,7 @@ Sky::RangeNode Sky::range_node(std::size_t index, double time_s, const MotionSta
 
   const double shrink = 1.0 / (1.0 + los.dot(velocity) / kSpeedOfLight);
   const double rate = los.dot(velocity - antenna_velocity) * shrink;
-  const double at_satellite = 1.0 - rate / kSpeedOfLight;  // of the satellite's time per time of reception
+  const double at_satellite = 1.0 - rate / kSpeedOfLight;  // satellite's time per time of reception
   const double relative_squared = (at_satellite * velocity - antenna_velocity).squaredNorm();
   const double second = ((relative_squared - rate * rate) / range_m +
                          los.dot(at_satellite * at_satellite * acceleration - antenna_acceleration)) *

@@ -1,10 +1,10 @@
 #pragma once
-// The radio field of one vehicle: which signals reach its antenna, and their ranges block by block.
+// Radio field of one vehicle: the signals at its antenna, and their ranges block by block.
 //
 // Geometric range and satellite clock are exact at the nodes every 100 ms, with their first and second derivative; a
-// quintic Hermite curve joins them (within 0.01 mm of the exact range, held by its test), so that phase and Doppler are
-// continuous through a satellite's pass. Ionosphere, relativistic delay, power and visibility change over minutes: they
-// are evaluated once a second, one and two seconds ahead by extrapolated motion, and a cubic joins them.
+// quintic Hermite curve joins them (within 0.01 mm of the exact range, verified by its test), so that phase and Doppler
+// are continuous through a satellite's pass. Ionosphere, relativistic delay, power and visibility change over minutes:
+// they are evaluated once a second, one and two seconds ahead by extrapolated motion, and a cubic joins them.
 
 #include <array>
 #include <cstdint>
@@ -35,11 +35,11 @@ class Sky {
       std::uint64_t seed, std::string_view vehicle);
 
   /// Fills the block `number` (from 100 ms * number since start on) of a vehicle whose motion has been advanced to the
-  /// block's end. Blocks are asked for in rising order. `is_radiated` false: no signals.
+  /// block's end. Blocks are requested in rising order. `is_radiated` false: no signals.
   void fill(VehicleMotion& motion, std::int64_t number, bool is_radiated, RfBlock& block);
 
  private:
-  static constexpr std::size_t kMaxSignals = 2;  ///< of one satellite
+  static constexpr std::size_t kMaxSignals = 2;  ///< signals of one satellite
   static constexpr std::int64_t kNever = INT64_MIN;
 
   /// Range plus satellite clock, and derivatives.
@@ -47,14 +47,14 @@ class Sky {
     double value_m = 0.0, rate_mps = 0.0, acceleration_mps2 = 0.0;
     double travel_s = 0.0, travel_rate = 0.0;
   };
-  /// What changes over minutes, at a whole second.
+  /// Quantities that change over minutes, at a whole second.
   struct SlowNode {
     bool is_visible = false;
     double ionosphere_l1_m = 0.0;
     double shapiro_m = 0.0;
     std::array<double, kMaxSignals> cn0_dbhz{};
   };
-  /// The antenna at one of the whole seconds around the present.
+  /// Antenna at one of the whole seconds around the present.
   struct SlowAntenna {
     double time_s = 0.0;
     double seconds_of_week = 0.0;
@@ -70,10 +70,10 @@ class Sky {
   };
   struct Satellite {
     std::vector<Channel> channels;
-    std::array<SlowNode, 4> slow;       ///< at second - 1, second, second + 1, second + 2
-    std::int64_t slow_second = kNever;  ///< of slow[1]
+    std::array<SlowNode, 4> slow;       ///< nodes at second - 1, second, second + 1, second + 2
+    std::int64_t slow_second = kNever;  ///< second of slow[1]
     RangeNode node;
-    std::int64_t node_number = kNever;  ///< of the block at whose beginning `node` is
+    std::int64_t node_number = kNever;  ///< number of the block at whose beginning `node` is
   };
   using Cubic = std::array<double, 4>;
 
@@ -91,7 +91,7 @@ class Sky {
   std::vector<Satellite> satellites_;
   std::array<SlowAntenna, 4> slow_antenna_{};
   std::int64_t second_ = kNever;
-  std::int64_t state_number_ = kNever;  ///< of the block at whose beginning `state_` is
+  std::int64_t state_number_ = kNever;  ///< number of the block at whose beginning `state_` is
   MotionState state_;
 };
 

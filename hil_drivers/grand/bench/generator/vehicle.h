@@ -1,5 +1,5 @@
 #pragma once
-// One vehicle of the bench: its motion, the radio field at its antenna, the receiver in that field, and the receiver's
+// Vehicle of the emulator: its motion, the radio field at its antenna, the receiver in that field, and the receiver's
 // serial lines.
 
 #include <cstdint>
@@ -35,28 +35,29 @@ class Vehicle {
   };
   [[nodiscard]] std::vector<Port>& ports() { return ports_; }
 
-  /// Forgets the motion; the receiver and its lines go on.
+  /// Discards the motion; the receiver and its lines continue.
   void reset(fsw::Duration join);
-  /// From now on blocks are flown in this field.
+  /// Starts the motion: blocks are from now on in this field.
   void start(std::unique_ptr<Sky> sky);
 
-  /// Flies up to `time` since start, block by block; bytes that leave the receiver are written to its lines.
+  /// Moves the vehicle up to `time` since start, block by block; bytes that leave the receiver are written to its
+  /// lines.
   void fly(fsw::Duration time);
-  /// Time up to which whole blocks have been flown.
+  /// Time up to which the vehicle has moved by whole blocks.
   [[nodiscard]] fsw::Duration blocks_end() const { return {next_block_ * RfBlock::kLength.ns}; }
   [[nodiscard]] const RfBlock& last_block() const { return block_; }
 
-  /// Before the run and after it: `span` passes for the receiver.
+  /// Advances the receiver by `span`, before the run and after it.
   void idle(fsw::Duration span);
-  /// While it is on, time passes for the receiver whenever it has something to answer, until it has: for a generator in
-  /// lock-step that does not run, so that no wall clock is needed.
+  /// Selects immediate answers. While they are on, time passes for the receiver whenever it has something to answer,
+  /// until it has: for a generator in lock-step that does not run, so that no wall clock is needed.
   void answer_at_once(bool is_on);
 
-  /// Hands what the host has written to the receiver.
+  /// Passes the bytes that the host has written to the receiver.
   void poll_lines();
 
   void set_outage(bool is_on) { outage_ = is_on; }
-  /// Seconds of its time since the last snap, at most 1e9.
+  /// Time since the last snap, s, on its own time, at most 1e9.
   [[nodiscard]] double seconds_since_snap() const;
 
  private:

@@ -14,7 +14,7 @@ namespace {
 using fsw::Duration;
 using fsw::Vector3;
 
-/// Of two times since the start.
+/// Returns the span between two times since the start.
 constexpr Duration span(Duration from, Duration to) {
   return {to.ns - from.ns};
 }

@@ -1,10 +1,10 @@
 #pragma once
-// The motion that the generator flies for one vehicle: the last sample extrapolated by its derivatives, joined smoothly
-// to what was flown before.
+// Motion of one vehicle in the generator: the last sample extrapolated by its derivatives, joined smoothly to the
+// motion before.
 //
-// A sample is used from its own time on, or from the present on if that has passed (it is late then). The curve flown
-// from there is the sample's polynomial of degree 3 plus a quintic that takes up the difference of position, velocity
-// and acceleration to the old curve and vanishes with two derivatives after the join time. Differences above
+// A sample is used from its own time on, or from the present on if that has passed (it is late then). The curve from
+// there on is the sample's polynomial of degree 3 plus a quintic that takes up the difference of position, velocity and
+// acceleration to the old curve and vanishes with two derivatives after the join time. Differences above
 // kSnapDistance_m are not joined: the motion jumps.
 
 #include <array>
@@ -34,7 +34,7 @@ enum class Reception {
 };
 
 struct MotionCounters {
-  std::uint64_t samples = 0;  ///< all that were received
+  std::uint64_t samples = 0;  ///< number of samples received
   std::uint64_t late = 0, doubled = 0, out_of_order = 0, rejected = 0, snaps = 0;
 };
 
@@ -42,36 +42,37 @@ class VehicleMotion {
  public:
   static constexpr double kSnapDistance_m = 10.0;
   static constexpr fsw::Duration kMaxLead = fsw::duration_of_seconds(10);
-  static constexpr fsw::Duration kExtrapolationLimit = fsw::duration_of_seconds(1);  ///< then state 1
-  static constexpr fsw::Duration kRadiationLimit = fsw::duration_of_seconds(5);      ///< then no RF
+  static constexpr fsw::Duration kExtrapolationLimit =
+      fsw::duration_of_seconds(1);                                               ///< of the sample's age; then state 1
+  static constexpr fsw::Duration kRadiationLimit = fsw::duration_of_seconds(5);  ///< of the sample's age; then no RF
 
   explicit VehicleMotion(fsw::Duration join) : join_(join) {}
 
   Reception receive(const TrajectorySample& sample);
 
-  /// Flies up to `time`, not before now(). A sample of exactly that time is used from the next call on, so that at() is
-  /// the motion at the end of what was flown.
+  /// Moves up to `time`, not before now(). A sample of exactly that time is used from the next call on, so that at() is
+  /// the motion at the end of the interval.
   void advance(fsw::Duration time);
 
   [[nodiscard]] fsw::Duration now() const { return now_; }
-  /// False before the first sample: there is no motion.
+  /// Returns false before the first sample: there is no motion.
   [[nodiscard]] bool is_defined() const { return current_.has_value(); }
   /// Time of the newest sample, used or not yet used.
   [[nodiscard]] fsw::Duration newest() const { return newest_; }
-  /// Time without a sample, at now().
+  /// Returns the time without a sample, at now().
   [[nodiscard]] fsw::Duration age() const;
   [[nodiscard]] bool is_deterministic() const { return age() <= kExtrapolationLimit; }
   [[nodiscard]] bool is_radiated() const { return is_defined() && age() <= kRadiationLimit; }
 
-  /// On the curve flown now; times before or after now() extrapolate that curve. Requires is_defined().
+  /// Returns the state on the present curve; times before or after now() extrapolate that curve. Requires is_defined().
   [[nodiscard]] MotionState at(fsw::Duration time) const;
-  /// Position, derivatives and attitude at now(), as a sample.
+  /// Returns position, derivatives and attitude at now(), as a sample.
   [[nodiscard]] TrajectorySample flown() const;
-  /// Unit vector of the antenna's boresight, Earth-fixed frame: the attitude of the sample in use against north,
-  /// east, down, rotated on by its angular rate and acceleration.
+  /// Returns the unit vector of the antenna's boresight, Earth-fixed frame: the attitude of the sample in use against
+  /// north, east, down, rotated further by its angular rate and acceleration.
   [[nodiscard]] fsw::Vector3 boresight_ecef(fsw::Duration time) const;
 
-  /// True once after the motion jumped.
+  /// Returns true once after the motion jumped.
   [[nodiscard]] bool take_snap();
   [[nodiscard]] const MotionCounters& counters() const { return counters_; }
   void set_join(fsw::Duration join) { join_ = join; }

@@ -29,7 +29,7 @@ enum class CommandId : std::uint16_t {
   kSerialConfig = 1246,
 };
 
-/// Identifiers of ports in binary commands; those of a port include its 32 virtual addresses.
+/// Identifiers of ports in binary commands; the identifier of a port includes its 32 virtual addresses.
 enum class PortId : std::uint32_t {
   kThisPortAll = 6,
   kAllPorts = 8,
@@ -40,12 +40,12 @@ enum class PortId : std::uint32_t {
 };
 
 enum class Trigger : std::uint8_t { kOnNew = 0, kOnChanged = 1, kOnTime = 2, kOnNext = 3, kOnce = 4, kOnMark = 5 };
-/// The trigger that a LOG without one stands for: the log's own default.
+/// Trigger of a LOG that names none: the log's own default.
 inline constexpr std::uint32_t kDefaultTrigger = 255;
 
 enum class LogFormat : std::uint8_t { kBinary = 0, kAscii = 1, kAbbreviated = 2 };
 
-/// A command with the values of its fields in order; a message field holds its number plus 65536 times its format.
+/// Command with the values of its fields in order; a message field holds its number plus 65536 times its format.
 struct Command {
   static constexpr std::size_t kMaxFields = 9;
   CommandId id = CommandId::kLog;
@@ -58,14 +58,14 @@ struct Command {
   [[nodiscard]] LogFormat format(std::size_t field) const { return static_cast<LogFormat>(whole(field) >> 16U); }
 };
 
-/// What the receiver answers; 1 is OK.
+/// Answer of the receiver; 1 is OK.
 struct Response {
   std::uint32_t id = 1;
   std::string text = "OK";
   [[nodiscard]] bool ok() const { return id == 1; }
 };
 
-// The manual's table of responses, as far as the receiver gives them.
+// Responses of the manual's table, as far as the receiver gives them.
 Response no_such_log();
 Response not_enough_resources();
 Response command_failed();
@@ -83,12 +83,12 @@ Response invalid_offset();
 
 using ReadCommand = std::variant<Command, Response>;
 
-/// A name and its fields, as words; `name` without the suffix of its format.
+/// Reads a name and its fields, as words; `name` without the suffix of its format.
 ReadCommand read_text_command(std::string_view name, const std::vector<std::string_view>& fields);
-/// The body of a binary command.
+/// Reads the body of a binary command.
 ReadCommand read_binary_command(std::uint16_t id, std::span<const std::uint8_t> body);
 
-/// The name of a command or the word in a message ("RANGEB") in capitals, and what its last letter says.
+/// Returns the name of a command or the word in a message ("RANGEB") in capitals, and the format of its last letter.
 std::string_view name_of(CommandId id);
 
 }  // namespace vbar::grand::bench

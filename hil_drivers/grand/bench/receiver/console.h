@@ -1,7 +1,7 @@
 #pragma once
-// The command interpreter of one port: cuts arbitrary bytes into commands, has them executed, and words the answers.
-// Three forms: abbreviated ASCII ("LOG RANGEB ONTIME 1" and a line end), ASCII ("#LOGA,...;...*crc"), binary.
-// Whatever arrives, memory is bounded by kMaxLine and kMaxBinary.
+// Command interpreter of one port: cuts arbitrary bytes into commands, has them executed, and words the answers. Three
+// forms: abbreviated ASCII ("LOG RANGEB ONTIME 1" and a line end), ASCII ("#LOGA,...;...*crc"), binary. For any input,
+// memory is bounded by kMaxLine and kMaxBinary.
 
 #include <cstdint>
 #include <functional>
@@ -22,15 +22,16 @@ class Console {
   struct Receiver {
     std::function<Response(int port, const Command&)> execute;
     std::function<twins::gnss::oem::Header(int port)> header;
-    /// An answer, complete.
+    /// Sends an answer, complete.
     std::function<void(int port, std::span<const std::uint8_t>)> answer;
   };
   Console(int port, Receiver receiver) : port_(port), receiver_(std::move(receiver)) {}
 
-  /// Bytes that arrived at `now_ns` (local time). An unfinished binary command is given up after a second of silence.
+  /// Processes bytes that arrived at `now_ns` (local time). An unfinished binary command is given up after a second of
+  /// silence.
   void listen(std::span<const std::uint8_t> bytes, std::int64_t now_ns);
   void restart();
-  /// "[COM1]".
+  /// Returns "[COM1]".
   [[nodiscard]] std::string prompt() const;
 
   [[nodiscard]] std::uint64_t commands() const { return commands_; }
@@ -49,7 +50,7 @@ class Console {
   int port_;
   Receiver receiver_;
   std::string line_;
-  bool line_spoilt_ = false;  ///< too long, or with bytes that are no text
+  bool line_spoilt_ = false;  ///< the line is too long, or has bytes that are not text
   bool after_carriage_return_ = false;
   std::vector<std::uint8_t> binary_;
   std::int64_t last_byte_ns_ = 0;
@@ -57,7 +58,7 @@ class Console {
   std::uint64_t refused_ = 0;
 };
 
-/// "#NAMEA,COM1,...;" and CRC around the fields of a log or an answer, with line end.
+/// Returns "#NAMEA,COM1,...;" and CRC around the fields of a log or an answer, with line end.
 std::string ascii_message(std::string_view name, int port, const twins::gnss::oem::Header& header,
                           std::string_view fields);
 

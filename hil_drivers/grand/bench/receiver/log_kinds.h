@@ -1,5 +1,5 @@
 #pragma once
-// The logs that the receiver can give.
+// Logs that the receiver can give.
 
 #include <array>
 #include <string_view>
@@ -8,8 +8,8 @@
 
 namespace vbar::grand::bench {
 
-/// How a log comes about: at an epoch of the clock, when a message of a satellite is complete, on request, or when the
-/// receiver status changes.
+/// Event that produces a log: an epoch of the clock, the completion of a satellite's message, a request, or a change of
+/// the receiver status.
 enum class LogClass : std::uint8_t { kEpoch, kMessage, kPolled, kEvent };
 
 struct LogKind {

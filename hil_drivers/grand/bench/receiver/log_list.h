@@ -1,5 +1,5 @@
 #pragma once
-// The logs that have been requested: at most 30 over all ports.
+// Logs that have been requested: at most 30 over all ports.
 
 #include <cstdint>
 #include <vector>
@@ -10,7 +10,7 @@
 namespace vbar::grand::bench {
 
 struct LogRequest {
-  int port = 0;  ///< that it goes to
+  int port = 0;  ///< port to which the log goes
   const LogKind* kind = nullptr;
   LogFormat format = LogFormat::kBinary;
   Trigger trigger = Trigger::kOnce;
@@ -18,7 +18,7 @@ struct LogRequest {
   std::int64_t offset = 0;
   bool hold = false;
 
-  /// Whether an ONTIME log is due at the epoch of this number (10 ms each).
+  /// Returns true if an ONTIME log is due at the epoch of this number (10 ms each).
   [[nodiscard]] bool due_at(std::int64_t epoch) const {
     return trigger == Trigger::kOnTime && (epoch - offset) % period == 0;
   }
@@ -28,7 +28,8 @@ class LogList {
  public:
   static constexpr std::size_t kMaxLogs = 30;
 
-  /// Replaces the request for the same log on the same port. `port` is the number of the port, resolved.
+  /// Adds a request; it replaces the request for the same log on the same port. `port` is the number of the port,
+  /// resolved.
   Response add(const Command& command, int port);
   /// Removes the log, held or not.
   void remove(int port, std::uint16_t id, LogFormat format);

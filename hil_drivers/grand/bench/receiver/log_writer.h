@@ -1,5 +1,5 @@
 #pragma once
-// The content of each log at an instant.
+// Content of each log at an instant.
 
 #include <optional>
 #include <string_view>
@@ -19,15 +19,15 @@ class LogWriter {
             fsw::Duration tag_shift)
       : engine_(engine), constellation_(constellation), week_shift_(week_shift), tag_shift_(tag_shift) {}
 
-  /// Header of a message at this reading.
+  /// Returns the header of a message at this reading.
   [[nodiscard]] twins::gnss::oem::Header header(int port, fsw::GpsTime reading, bool position_valid,
                                                 std::uint32_t more_status_bits) const;
 
-  /// Log of an epoch.
+  /// Appends the log of an epoch.
   void append_epoch(Bytes& bytes, const LogRequest& request, const twins::gnss::oem::Header& header,
                     const EpochData& epoch) const;
-  /// Every message of the kind that has been received; with `satellite` that of this one only. Nothing for a satellite
-  /// of another system.
+  /// Appends every message of the kind that has been received; with `satellite` that of this one only. Nothing for a
+  /// satellite of another system.
   void append_messages(Bytes& bytes, const LogRequest& request, const twins::gnss::oem::Header& header,
                        std::optional<std::size_t> satellite) const;
   void append_version(Bytes& bytes, const LogRequest& request, const twins::gnss::oem::Header& header) const;

@@ -1,5 +1,5 @@
 #pragma once
-// The receiver without its ports: channels, search, clock, messages and own solution on the radio field.
+// Receiver without its ports: channels, search, clock, messages and own solution on the radio field.
 
 #include <cstdint>
 #include <memory>
@@ -23,7 +23,7 @@ class MeasurementEngine final : public Measurements {
   MeasurementEngine(const ReceiverSettings& settings, std::shared_ptr<const twins::gnss::Constellation> constellation,
                     std::uint64_t seed, std::string_view vehicle);
 
-  /// Forgets everything but what is stored.
+  /// Discards everything but what is stored.
   void restart(StoredData stored) override;
 
   void advance(const RfBlock& block, double cn0_offset_db, const Listener& listener) override;
@@ -45,7 +45,7 @@ class MeasurementEngine final : public Measurements {
     return receptions_[satellite];
   }
   [[nodiscard]] bool corrections_known() const override { return corrections_known_; }
-  /// Of the last block: satellites with a new set, and whether ionosphere and UTC were received.
+  /// Events of the last block: satellites with a new set, and whether ionosphere and UTC were received.
   [[nodiscard]] const std::vector<std::size_t>& new_sets() const override { return new_sets_; }
   [[nodiscard]] bool new_corrections() const override { return new_corrections_; }
 
@@ -53,7 +53,7 @@ class MeasurementEngine final : public Measurements {
   void report(ReceiverReport& report) const override;
 
  private:
-  /// Channels of a satellite: the first, and that of L2 or the same again.
+  /// Channels of a satellite: the first, and the one of L2 or a second one of the same signal.
   struct Satellite {
     std::size_t first_channel = 0;
     bool has_second = false;
@@ -83,7 +83,7 @@ class MeasurementEngine final : public Measurements {
   SignalSearch search_;
   std::vector<SignalChannel> channels_;  ///< in the order of satellite and signal, as in the radio field
   std::vector<std::size_t> satellite_of_channel_;
-  std::vector<bool> bit_synchronised_;  ///< of each channel
+  std::vector<bool> bit_synchronised_;  ///< for each channel
   std::vector<Satellite> satellites_;
   std::vector<MessageReception> receptions_;
   std::array<SignalBias, twins::gnss::kSignals> biases_{};
@@ -101,15 +101,15 @@ class MeasurementEngine final : public Measurements {
   std::vector<std::size_t> new_sets_;
   std::int64_t last_epoch_ = -1;
 
-  // Of the block.
-  std::vector<const RfSignal*> rf_;        ///< of each channel, or null
-  std::vector<const RfSignal*> rf_first_;  ///< of each satellite's first channel
+  // Data of the block.
+  std::vector<const RfSignal*> rf_;        ///< signal of each channel, or null
+  std::vector<const RfSignal*> rf_first_;  ///< signal of each satellite's first channel
   std::vector<bool> tracked_;              ///< each satellite
   std::vector<std::size_t> found_;
   double setting_m_ = 0.0;
   std::array<double, twins::gnss::kSignals> setting_cycles_{};
   EpochData epoch_;
-  std::vector<std::size_t> epoch_satellites_;  ///< of each record
+  std::vector<std::size_t> epoch_satellites_;  ///< satellite of each record
   std::vector<SolutionInput> solution_input_;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// What a receiver measures and knows, without its ports: by the emulated loops (measurement_engine.h) or by another
-// program on baseband samples (../samples/gnss_sdr).
+// Measurements of a receiver and its data, without its ports: by the emulated loops (measurement_engine.h) or by
+// another program on baseband samples (../samples/gnss_sdr).
 
 #include <cstdint>
 #include <functional>
@@ -16,11 +16,11 @@
 
 namespace vbar::grand::bench {
 
-/// State for the record of the bench; nothing of it enters a byte.
+/// State for the record of the emulator; it enters no byte of the receiver.
 struct ReceiverReport {
   int time_status = 20;  ///< as in the header of a log
   int signals_searched = 0;
-  int signals_tracked = 0;  ///< with code lock
+  int signals_tracked = 0;  ///< number of signals with code lock
   int signals_phase_locked = 0;
   int ephemerides = 0;
   double clock_offset_s = 0.0;  ///< true: clock minus GPS time; 0 until the clock has been set
@@ -31,11 +31,11 @@ struct ReceiverReport {
   std::uint64_t garbage_bytes = 0;  ///< received at a wrong baud rate
 };
 
-/// The measurements of one epoch of the receiver's clock.
+/// Measurements of one epoch of the receiver's clock.
 struct EpochData {
-  std::int64_t number = 0;  ///< of 10 ms of the reading
+  std::int64_t number = 0;  ///< number of 10 ms of the reading
   fsw::GpsTime reading;
-  double after_begin_s = 0.0;  ///< when it was, from the beginning of the block
+  double after_begin_s = 0.0;  ///< time of the epoch since the beginning of the block
   std::vector<twins::gnss::oem::RangeRecord> ranges;
   std::optional<OwnSolution> solution;
   int satellites_tracked = 0;
@@ -48,14 +48,14 @@ class Measurements {
   Measurements& operator=(const Measurements&) = delete;
   virtual ~Measurements() = default;
 
-  /// Forgets everything but what is stored.
+  /// Discards everything but what is stored.
   virtual void restart(StoredData stored) = 0;
 
   struct Listener {
-    std::function<bool(std::int64_t epoch)> wants;   ///< whether a log is due at this epoch
+    std::function<bool(std::int64_t epoch)> wants;   ///< returns true if a log is due at this epoch
     std::function<void(const EpochData&)> on_epoch;  ///< called for these and for every whole second
   };
-  /// Lets the 100 ms of the block pass.
+  /// Advances by the 100 ms of the block.
   virtual void advance(const RfBlock& block, double cn0_offset_db, const Listener& listener) = 0;
 
   // Commands; those that do not apply are accepted without effect.
@@ -66,16 +66,16 @@ class Measurements {
   virtual void set_elevation_cutoff(double /*elevation*/) {}
 
   [[nodiscard]] virtual twins::gnss::oem::TimeStatus time_status() const = 0;
-  /// The clock has been set by a time of week received.
+  /// Returns true if the clock has been set by a time of week received.
   [[nodiscard]] bool time_is_set() const { return time_status() >= twins::gnss::oem::TimeStatus::kCoarse; }
-  /// The reading of the clock at the end of the block, whole milliseconds.
+  /// Returns the reading of the clock at the end of the block, whole milliseconds.
   [[nodiscard]] virtual fsw::GpsTime reading() const = 0;
 
   /// Messages received, by the constellation's index.
   [[nodiscard]] virtual std::size_t satellites() const = 0;
   [[nodiscard]] virtual const MessageReception& reception(std::size_t satellite) const = 0;
   [[nodiscard]] virtual bool corrections_known() const = 0;
-  /// Of the last block: satellites with a new set, and whether ionosphere and UTC were received.
+  /// Events of the last block: satellites with a new set, and whether ionosphere and UTC were received.
   [[nodiscard]] virtual const std::vector<std::size_t>& new_sets() const = 0;
   [[nodiscard]] virtual bool new_corrections() const = 0;
 

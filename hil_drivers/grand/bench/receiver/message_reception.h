@@ -1,6 +1,6 @@
 #pragma once
-// The navigation messages as a receiver obtains them: bit by bit. A part (a subframe, a page) has been received when
-// the channel was in lock from its first bit to its last and the sign of the bits is known; a set of ephemerides is
+// Navigation messages as a receiver obtains them: bit by bit. A part (a subframe, a page) has been received when the
+// channel was in lock from its first bit to its last and the sign of the bits is known; a set of ephemerides is
 // complete with all its parts of one issue. There is no timer.
 
 #include <cstdint>
@@ -13,7 +13,8 @@
 
 namespace vbar::grand::bench {
 
-/// Where a system's message has what a receiver needs, in seconds of its cycle; cycles begin with the system's week.
+/// Positions of the parts that a receiver needs, in seconds of the message's cycle; cycles begin with the system's
+/// week.
 struct MessageLayout {
   struct Part {
     double begin_s;
@@ -27,9 +28,9 @@ struct MessageLayout {
   double time_of_week_period_s;
 };
 
-/// GPS LNAV (IS-GPS-200N, 20.3.3: subframes 1 to 3 of 6 s), Galileo I/NAV on E1-B (OS SIS ICD 2.1, table 36: words 2,
-/// 4, 1, 3, 5 of 2 s), BeiDou D1 (BDS-SIS-ICD-B1I-3.0, 5.2.1: subframes 1 to 3 of 6 s) and D2 (5.3.1: ten pages of
-/// subframe 1, 0.6 s every 3 s).
+/// Returns the layout of the satellite's message: GPS LNAV (IS-GPS-200N, 20.3.3: subframes 1 to 3 of 6 s), Galileo
+/// I/NAV on E1-B (OS SIS ICD 2.1, table 36: words 2, 4, 1, 3, 5 of 2 s), BeiDou D1 (BDS-SIS-ICD-B1I-3.0, 5.2.1:
+/// subframes 1 to 3 of 6 s) and D2 (5.3.1: ten pages of subframe 1, 0.6 s every 3 s).
 const MessageLayout& message_layout(twins::gnss::SatelliteId satellite);
 
 /// Reception from one satellite.
@@ -37,34 +38,34 @@ class MessageReception {
  public:
   explicit MessageReception(twins::gnss::SatelliteId satellite);
 
-  /// What the last call of receive() brought.
+  /// Parts received by the last call of receive().
   struct News {
     bool sign_of_bits = false;  ///< the sync pattern was received: the channel's half cycle is known
     bool time_of_week = false;
     bool ephemeris = false;    ///< a new set
     bool corrections = false;  ///< ionosphere and UTC (GPS subframe 4, page 18)
   };
-  /// Bits transmitted until `transmitted` (system independent, GPS time) have arrived; `locked`: in phase lock and bit
+  /// Receives the bits transmitted until `transmitted` (system independent, GPS time). `locked`: in phase lock and bit
   /// synchronisation since the last call. `index` is the satellite's in the constellation.
   News receive(fsw::GpsTime transmitted, bool locked, const twins::gnss::Constellation& constellation,
                std::size_t index);
 
-  /// The channel was found to have slipped by half cycles: what is being received is worthless.
+  /// Restarts the reception after the channel was found to have slipped by half cycles: the present part is invalid.
   void restart() { heard_since_.reset(); }
 
   [[nodiscard]] const std::optional<twins::gnss::BroadcastSet>& set() const { return set_; }
-  /// When the first part of the set was transmitted.
+  /// Time at which the first part of the set was transmitted.
   [[nodiscard]] fsw::GpsTime set_transmitted() const { return set_transmitted_; }
   void keep(const twins::gnss::BroadcastSet& set, fsw::GpsTime transmitted);
   void forget();
 
  private:
   struct Heard {
-    fsw::GpsTime begin;  ///< of the last complete reception
-    fsw::GpsTime toe;    ///< of its set
+    fsw::GpsTime begin;  ///< begin of the last complete reception
+    fsw::GpsTime toe;    ///< toe of its set
     bool valid = false;
   };
-  /// The begin of the last occurrence that ended by `transmitted` and began in lock; none without.
+  /// Returns the begin of the last occurrence that ended by `transmitted` and began in lock; empty if there is none.
   [[nodiscard]] std::optional<fsw::GpsTime> last_heard(double begin_s, double length_s, double period_s,
                                                        fsw::GpsTime transmitted) const;
   bool complete_set(const twins::gnss::Constellation& constellation, std::size_t index);

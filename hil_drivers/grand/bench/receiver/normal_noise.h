@@ -36,7 +36,7 @@ class NormalNoise {
   NormalNoise(std::uint64_t seed, std::string_view name) : stream_(seed, name), table_(&NormalTable::instance()) {}
 
   double operator()() { return table_->quantile(stream_.bits()); }
-  /// Uniform on (low, high), from the same stream.
+  /// Returns a number uniform on (low, high), from the same stream.
   double uniform(double low, double high) { return stream_.uniform(low, high); }
 
  private:

@@ -1,6 +1,7 @@
 #pragma once
-// The receiver's own position, velocity and time: least squares of GPS L1 code and Doppler, iterated from where it
-// was last, with the ephemerides it has received. Neither ionosphere nor truth enters.
+// Receiver's own position, velocity and time: least squares of GPS L1 code and Doppler, iterated from its last
+// position, with the ephemerides it has received. Neither ionosphere nor truth enters.
+// State: position (m, ECEF), clock offset (s); then velocity (m/s), clock drift.
 
 #include <optional>
 #include <vector>
@@ -29,8 +30,9 @@ struct OwnSolution {
   int satellites = 0;
 };
 
-/// `reading`: the epoch by the receiver's clock; `start`: a position within some thousand kilometres, or none. No
-/// solution with fewer than four satellites, a singular geometry, without convergence or away from the Earth.
+/// Solves for an epoch. `reading` is the epoch by the receiver's clock, `start` a position within some thousand
+/// kilometres, or none. No solution with fewer than four satellites, a singular geometry, without convergence or away
+/// from the Earth.
 std::optional<OwnSolution> solve_own(const std::vector<SolutionInput>& input, fsw::GpsTime reading,
                                      const std::optional<fsw::Vector3>& start);
 

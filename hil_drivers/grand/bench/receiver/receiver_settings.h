@@ -1,6 +1,6 @@
 #pragma once
-// Settings of one emulated receiver, as the bench's scenario file gives them. Defaults: NovAtel OEM628, GRAND.md
-// section 6 of the project's design notes; the constants of its firmware are not public.
+// Settings of one emulated receiver, as the emulator's scenario file gives them. Defaults: NovAtel OEM628; the
+// constants of its firmware are not public.
 
 #include <cstdint>
 
@@ -15,7 +15,7 @@ struct LoopSettings {
   double carrier_bandwidth_hz = 15.0;
   double code_bandwidth_hz = 0.25;
   double code_bandwidth_l2_hz = 0.1;
-  double smoothing_s = 100.0;         ///< of the pseudorange by the carrier; the command CSMOOTH changes it
+  double smoothing_s = 100.0;         ///< smoothing of the pseudorange by the carrier; the command CSMOOTH changes it
   double phase_lock_threshold = 0.4;  ///< mean of cos 2x over 1 s
   double code_lock_threshold_dbhz = 24.0;
   double code_bias_sigma_m = 0.0;  ///< constant code delay of each signal in the receiver
@@ -26,7 +26,7 @@ struct LoopSettings {
 struct SearchSettings {
   double threshold_dbhz = 33.0;
   int engines = 4;
-  double sweep_hz_per_s = 60e3;          ///< of one engine
+  double sweep_hz_per_s = 60e3;          ///< rate of one engine
   double blind_window_hz = 50e3;         ///< +-; without knowledge of the receiver's own velocity
   double known_window_hz = 2e3;          ///< +-; with a point solution and an ephemeris or almanac
   double reacquisition_window_hz = 500;  ///< +-; about the Doppler of a signal lost less than a minute ago
@@ -34,15 +34,15 @@ struct SearchSettings {
 };
 
 struct LineSettings {
-  unsigned baud = 115200;             ///< as saved in the receiver: after power-up
-  int buffer_bytes = 16384;           ///< of a port's output
+  unsigned baud = 115200;             ///< rate saved in the receiver: after power-up
+  int buffer_bytes = 16384;           ///< buffer of a port's output
   double computing_ms = 40.0;         ///< from epoch to first byte, mean
   double computing_spread_ms = 10.0;  ///< +-, uniform
   double boot_s = 2.0;                ///< from power-up to prompt
   friend bool operator==(const LineSettings&, const LineSettings&) = default;
 };
 
-/// What the receiver's permanent memory holds at power-up. With kAlmanac, time and position by command (SETAPPROXTIME,
+/// Content of the receiver's permanent memory at power-up. With kAlmanac, time and position by command (SETAPPROXTIME,
 /// SETAPPROXPOS) make a warm start, with kEphemerides a hot one; without them every start searches blindly.
 enum class StoredData : std::uint8_t { kNothing, kAlmanac, kEphemerides };
 
@@ -50,8 +50,9 @@ struct ReceiverSettings {
   LoopSettings loops;
   SearchSettings search;
   LineSettings line;
-  /// As the digital twin's but for the white frequency noise, which there describes seconds: at 10 ms it would be 3e-9,
-  /// and loops of 15 Hz would slip every few seconds (0.3 rad after Kaplan, Hegarty 2017, 8.3.3.2). This one is 3e-10.
+  /// Clock of the digital twin except for the white frequency noise, which there describes seconds: at 10 ms it would
+  /// be 3e-9, and loops of 15 Hz would slip every few seconds (0.3 rad after Kaplan, Hegarty 2017, 8.3.3.2). This one
+  /// is 3e-10.
   twins::gnss::ClockSettings clock{.h0_s = 2e-21};
   double steering_bandwidth_hz = 0.03;
   StoredData stored = StoredData::kAlmanac;

@@ -44,7 +44,7 @@ bool SerialLine::queue(std::span<const std::uint8_t> message, std::int64_t ready
   return true;
 }
 
-// Where nobody listens, what has left is gone.
+// Without a listener the bytes that have left are lost.
 void SerialLine::forget_unheard(std::int64_t ns) {
   constexpr std::size_t kMaxUnheard = 4096;
   while (queue_.size() > kMaxUnheard) {

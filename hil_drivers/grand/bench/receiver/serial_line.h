@@ -1,5 +1,5 @@
 #pragma once
-// The output of a serial port: whole messages wait in a buffer and leave byte by byte at the baud rate (8N1: ten bits a
+// Output of a serial port: whole messages wait in a buffer and leave byte by byte at the baud rate (8N1: ten bits a
 // byte). Times are the receiver's own local time, ns since it was made.
 
 #include <cstdint>
@@ -17,21 +17,23 @@ class SerialLine {
  public:
   SerialLine(unsigned baud, int buffer_bytes, engine::RandomStream garbage);
 
-  /// The message is ready at `ready_ns`, not before the one queued last. False if it does not fit into the buffer: it
-  /// is dropped as a whole.
+  /// Queues a message that is ready at `ready_ns`, not before the one queued last. Returns false if it does not fit
+  /// into the buffer: it is dropped as a whole.
   bool queue(std::span<const std::uint8_t> message, std::int64_t ready_ns);
-  /// The rate of what is queued from now on.
+  /// Sets the rate of messages queued from now on.
   void set_baud(unsigned baud) { baud_ = baud; }
   [[nodiscard]] unsigned baud() const { return baud_; }
-  /// Everything that has not left is lost.
+  /// Discards everything that has not left.
   void clear();
 
-  /// The bytes whose stop bit has passed by `now_ns`, as a listener at `host_baud` (0: the right rate) receives them.
+  /// Returns the bytes whose stop bit has passed by `now_ns`, as a listener at `host_baud` (0: the right rate) receives
+  /// them.
   [[nodiscard]] Bytes take(std::int64_t now_ns, unsigned host_baud);
-  /// Whether a byte has not left yet.
+  /// Returns true if a byte has not left yet.
   [[nodiscard]] bool busy(std::int64_t now_ns) const { return free_ns_ > now_ns; }
 
-  /// What arrives of `bytes` sent at another rate than the listener's: random bytes, in proportion to the rates.
+  /// Returns what arrives of `bytes` sent at another rate than the listener's: random bytes, in proportion to the
+  /// rates.
   Bytes garbage(std::span<const std::uint8_t> bytes, unsigned sent_baud, unsigned heard_baud);
 
  private:
@@ -48,7 +50,7 @@ class SerialLine {
   std::size_t buffer_bytes_;
   engine::RandomStream garbage_;
   std::deque<Message> queue_;
-  std::int64_t free_ns_ = 0;  ///< when the last byte queued will have left
+  std::int64_t free_ns_ = 0;  ///< time at which the last byte queued will have left
 };
 
 }  // namespace vbar::grand::bench

@@ -1,5 +1,5 @@
 #pragma once
-// One channel: the loops of one signal, what the receiver concludes from their correlations (lock, C/N0), the count of
+// Channel of the receiver: the loops of one signal, the conclusions from their correlations (lock, C/N0), the count of
 // the carrier and the smoothed pseudorange.
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 
 namespace vbar::grand::bench {
 
-/// As numbered in the tracking status word of RANGE.
+/// State of a channel as numbered in the tracking status word of RANGE.
 enum class ChannelState : std::uint8_t { kIdle = 0, kSearch = 1, kPullIn = 2, kPhaseLock = 4, kFrequencyLock = 7 };
 
-/// What a channel measured at one update.
+/// Measurement of a channel at one update.
 struct Measurement {
   ChannelState state = ChannelState::kIdle;
   bool code_lock = false;
@@ -37,15 +37,15 @@ class SignalChannel {
   /// Begins to track the signal, handed over by the search with errors of +-20 Hz and a quarter of a chip. `rf` is the
   /// signal as it is radiated.
   void start_from_search(const RfSignal& rf, double oscillator_m, double oscillator_drift_mps);
-  /// The same for L2, handed over by the tracked L1: its rate is known to 0.5 Hz, its code to the ionosphere.
+  /// Begins to track L2, handed over by the tracked L1: its rate is known to 0.5 Hz, its code to the ionosphere.
   void start_from(const SignalChannel& first, const RfSignal& rf, double oscillator_m);
   void stop();
 
-  /// The updates of one block. `smoothing_s` as of the command CSMOOTH.
+  /// Computes the updates of one block. `smoothing_s` is that of the command CSMOOTH.
   void advance(const LoopInput& input, double smoothing_s);
 
-  /// The message gave the sign of the bits: the half cycle is known from now on. False if the sign had been taken for
-  /// the other one (the loop slipped by half cycles): the count restarts.
+  /// Resolves the half cycle by the sign of the bits that the message gave. Returns false if the opposite sign had been
+  /// assumed (the loop slipped by half cycles): the count restarts.
   bool resolve_half_cycle();
   void forget_half_cycle() { parity_known_ = false; }
 
@@ -61,7 +61,7 @@ class SignalChannel {
   [[nodiscard]] const BlockSeries& motion_m() const { return motion_m_; }
   [[nodiscard]] std::uint64_t phase_locks_lost() const { return phase_locks_lost_; }
 
-  /// At update `k` of the last block, which `LoopInput::snapshots` asked for.
+  /// Returns the measurement at update `k` of the last block, which `LoopInput::snapshots` requested.
   [[nodiscard]] Measurement measurement(std::size_t k) const;
 
  private:

@@ -11,8 +11,8 @@ using twins::gnss::Signal;
 using twins::gnss::System;
 
 constexpr double kBlock_s = 0.1;
-constexpr double kCn0Noise_db = 1.0;           ///< of the short integration that decides
-constexpr double kRateGrowth_hz_per_s = 60.0;  ///< of the Doppler of a signal that is no longer tracked, in orbit
+constexpr double kCn0Noise_db = 1.0;           ///< noise of the short integration that decides
+constexpr double kRateGrowth_hz_per_s = 60.0;  ///< Doppler of a signal that is no longer tracked, in orbit
 constexpr double kMinElevation = -0.53;        ///< rad, -30 deg: an orbit sees below the horizontal
 
 Signal first_signal(System system) {

@@ -1,7 +1,7 @@
 #pragma once
-// The search for satellites: engines that each sweep the Doppler of one satellite after the other. What is known
-// decides which satellites are searched and how far the sweep goes; a satellite that cannot be found costs the whole
-// sweep. So cold and warm starts differ.
+// Search for satellites: engines that each sweep the Doppler of one satellite after the other. The available
+// information decides which satellites are searched and how far the sweep goes; a satellite that cannot be found costs
+// the whole sweep. So cold and warm starts differ.
 
 #include <cstdint>
 #include <memory>
@@ -18,7 +18,7 @@
 
 namespace vbar::grand::bench {
 
-/// What limits the search.
+/// Information that limits the search.
 struct SearchKnowledge {
   std::optional<fsw::Vector3> position_ecef;      ///< with almanac and time: satellites below are not searched
   bool velocity = false;                          ///< the Doppler is predicted
@@ -32,11 +32,12 @@ class SignalSearch {
 
   void restart();
 
-  /// The first signal of a satellite was lost, at this range rate.
+  /// Records that the first signal of a satellite was lost, at this range rate.
   void lost(std::size_t satellite, double range_rate_mps);
 
-  /// 100 ms from `time` on. `signals`: the first signal of each satellite as radiated, or null; `range_rate_mps` adds
-  /// the oscillator's; `tracked` satellites are not searched. `found` gets the satellites found in this block.
+  /// Searches during 100 ms from `time` on. `signals` are the first signal of each satellite as radiated, or null;
+  /// `range_rate_mps` adds the oscillator's; `tracked` satellites are not searched. `found` receives the satellites
+  /// found in this block.
   void advance(fsw::GpsTime time, const std::vector<const RfSignal*>& signals, double oscillator_rate_mps,
                double cn0_offset_db, const std::vector<bool>& tracked, const SearchKnowledge& knowledge,
                std::vector<std::size_t>& found);

@@ -13,14 +13,14 @@ using fsw::gnss::kSpeedOfLight;
 constexpr std::int64_t kMillisecond_ns = 1'000'000;
 constexpr std::int64_t kUpdate_ns = 10'000'000;
 constexpr double kSettingFrequency_hz = 2.046e6;
-constexpr double kMaxSlew_per_s = 10e-9;  ///< of the steered frequency: 3 m/s^2 to the carrier loops
+constexpr double kMaxSlew_per_s = 10e-9;  ///< rate of the steered frequency: 3 m/s^2 to the carrier loops
 constexpr double kMaxSteering = 10e-6;
 constexpr double kDriftToSet = 2e-9;        ///< the frequency is steered to this before the fine setting
 constexpr int kSecondsToSet = 60;           ///< or this time is waited
 constexpr double kApproachTime_s = 10.0;    ///< the offset left by the setting is brought in with this time constant
 constexpr double kMaxApproach = 30e-9;      ///< and at most at this rate
 constexpr double kSteeringBound_s = 30e-9;  ///< within it the loop is closed
-constexpr double kFrequencyGain = 0.3;      ///< of the measured drift, per second
+constexpr double kFrequencyGain = 0.3;      ///< gain of the measured drift, per second
 constexpr double kLostBound_s = 100e-9;     ///< beyond it, it is opened again
 constexpr double kResetBound_s = 1e-6;      ///< beyond it the reading is set again
 constexpr int kSecondsToFineSteering = 5;

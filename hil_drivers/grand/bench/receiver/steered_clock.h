@@ -1,5 +1,5 @@
 #pragma once
-// The receiver's clock: what it shows, and how the receiver sets and steers it.
+// Receiver's clock: its reading, and how the receiver sets and steers it.
 //
 // reading = GPS time + oscillator offset + setting. The loops see the oscillator; a setting changes the reading alone,
 // and pseudorange and phase by c times as much. So that double differences remain integers, a setting is a multiple of
@@ -29,17 +29,17 @@ class SteeredClock {
   SteeredClock(const twins::gnss::ClockSettings& settings, double steering_bandwidth_hz, std::uint64_t seed,
                std::string_view vehicle);
 
-  /// Forgets the time and the steering; the oscillator goes on. The reading then counts from zero.
+  /// Discards the time and the steering; the oscillator continues. The reading then counts from zero.
   void restart();
-  /// SETAPPROXTIME: the reading from the next block on (rounded to a millisecond of the oscillator's own time).
+  /// Sets the reading by SETAPPROXTIME from the next block on (rounded to a millisecond of the oscillator's own time).
   void set_approximate(fsw::GpsTime reading);
   void enable_steering(bool on) { steering_enabled_ = on; }
   [[nodiscard]] bool steering_enabled() const { return steering_enabled_; }
 
-  /// The oscillator during the block that begins at `begin`.
+  /// Advances the oscillator over the block that begins at `begin`.
   void advance(fsw::GpsTime begin);
 
-  /// c times the oscillator's offset at each update of the block, and its rate at the beginning, m/s.
+  /// Returns c times the oscillator's offset at each update of the block, and its rate at the beginning, m/s.
   [[nodiscard]] const BlockSeries& oscillator_m() const { return oscillator_m_; }
   [[nodiscard]] double oscillator_rate_mps() const;
 
@@ -51,24 +51,24 @@ class SteeredClock {
   };
   [[nodiscard]] Epoch epoch(std::size_t k) const { return epochs_[k]; }
 
-  /// The reading at the end of the block, whole milliseconds, as it has been set by now.
+  /// Returns the reading at the end of the block, whole milliseconds, as it has been set by now.
   [[nodiscard]] fsw::GpsTime reading_at_end() const;
 
-  /// Metres to be added to ranges and phases by the loops: c times the setting.
+  /// Returns the metres to be added to ranges and phases by the loops: c times the setting.
   [[nodiscard]] double setting_m() const;
-  /// The same in cycles of a carrier, a whole number.
+  /// Returns the setting in cycles of a carrier, a whole number.
   [[nodiscard]] double setting_cycles(double frequency_hz) const;
 
-  /// A time of week has been received: the reading is set as if the signal had travelled for
-  /// `assumed_travel_s`, instead of `travel_s`. Takes effect at the next block.
+  /// Sets the reading by a time of week received, as if the signal had travelled for `assumed_travel_s`, instead of
+  /// `travel_s`. Takes effect at the next block.
   void set_coarse(double travel_s, double assumed_travel_s);
-  /// A point solution, once a second: estimated offset of the reading (s), its drift, or none.
+  /// Processes a point solution, once a second: estimated offset of the reading (s), its drift, or none.
   void take_solution(double offset_s, double drift);
   void take_no_solution();
 
   [[nodiscard]] TimeStatus status() const { return status_; }
   [[nodiscard]] bool is_set() const { return status_ >= TimeStatus::kCoarse; }
-  /// True offset of the reading at the beginning of the block.
+  /// Returns the true offset of the reading at the beginning of the block.
   [[nodiscard]] double true_offset_s() const;
 
  private:
@@ -86,14 +86,14 @@ class SteeredClock {
   TimeStatus status_ = TimeStatus::kUnknown;
   fsw::GpsTime begin_;
   std::int64_t setting_ms_ = 0;
-  std::int64_t setting_steps_ = 0;  ///< of 1/2.046 MHz
+  std::int64_t setting_steps_ = 0;  ///< setting in steps of 1/2.046 MHz
   bool reading_pending_ = true;     ///< the reading is to be set to pending_reading_ at the next block
   fsw::GpsTime pending_reading_;
 
   double steered_s_ = 0.0;      ///< offset by steering
   double steering_rate_ = 0.0;  ///< s/s
   double steering_target_ = 0.0;
-  double frequency_ = 0.0;  ///< that cancels the oscillator's drift
+  double frequency_ = 0.0;  ///< frequency that cancels the oscillator's drift
   bool loop_closed_ = false;
   int seconds_to_set_ = 0;
   int seconds_within_ = 0;

@@ -10,7 +10,7 @@ namespace {
 using twins::gnss::Signal;
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
-constexpr double kFrequencyGain = 0.25;  ///< of the loop of frequency, per update
+constexpr double kFrequencyGain = 0.25;  ///< gain of the frequency loop, per update
 constexpr double kPullInSpacing_chips = 1.0;
 constexpr double kPullInCodeBandwidth_hz = 5.0;
 // An exponential mean with the variance of a mean over 100 updates.

@@ -10,9 +10,9 @@
 //   second order, w = B/0.53:  rate += w^2 T dx,  phase += rate T + 1.414 w T dx   (Kaplan, Hegarty 2017, 8.3.4)
 //   code: aided by the carrier, first order: y += 4 Bd T (E-L)/(2 A)
 //
-// A loop of frequency precedes the loop of phase: the angle between consecutive correlations, likewise insensitive to
-// data bits, corrects the rate. The loop follows the received range including the receiver's own oscillator; a stable
-// point lies at every half cycle. Slips and losses of lock are results of these equations.
+// A frequency loop precedes the phase loop: the angle between consecutive correlations, which is insensitive to data
+// bits as well, corrects the rate. The loop follows the received range including the receiver's own oscillator; a
+// stable point lies at every half cycle. Slips and losses of lock are results of these equations.
 
 #include <array>
 #include <cstddef>
@@ -27,18 +27,18 @@ namespace vbar::grand::bench {
 inline constexpr double kUpdate_s = 0.01;
 inline constexpr std::size_t kUpdatesPerBlock = 10;
 
-/// One number for each update of a block.
+/// Values at each update of a block.
 using BlockSeries = std::array<double, kUpdatesPerBlock>;
 
-/// The loops' estimate at an update, the correction by this update included.
+/// Estimate of the loops at an update, the correction by this update included.
 struct LoopSnapshot {
-  double phase_cycles = 0.0;  ///< of the received range, from an arbitrary origin
+  double phase_cycles = 0.0;  ///< phase of the received range, from an arbitrary origin
   double rate_hz = 0.0;
   double acceleration_hz_per_s = 0.0;
   double code_m = 0.0;  ///< received range by the code
 };
 
-/// What one signal's loops see in a block.
+/// Input of one signal's loops in a block.
 struct LoopInput {
   const RfSignal* signal = nullptr;           ///< null: noise only
   const BlockSeries* oscillator_m = nullptr;  ///< c times the offset of the receiver's oscillator, at each update
@@ -53,26 +53,26 @@ class TrackingLoops {
  public:
   TrackingLoops(const LoopSettings& settings, twins::gnss::Signal signal);
 
-  /// Starts in pull-in, with what the search (or another signal) hands over.
+  /// Starts in pull-in, with the values of the search (or of another signal).
   void start(double phase_cycles, double rate_hz, double code_m);
-  /// From pull-in to tracking of the phase, and back (with the present rate).
+  /// Changes from pull-in to tracking of the phase, and back (with the present rate).
   void set_mode(LoopMode mode);
 
-  /// The updates of one block; estimates wanted by `input.snapshots` go to `snapshots[k]`, the carrier's motion during
-  /// each interval to `motion_m`.
+  /// Computes the updates of one block. Estimates requested by `input.snapshots` go to `snapshots[k]`, the carrier's
+  /// motion during each interval to `motion_m`.
   void advance(const LoopInput& input, NormalNoise& noise, LoopSnapshot* snapshots, BlockSeries& motion_m);
 
-  /// Estimate of the amplitude A, by which the code discriminator is normalised.
+  /// Sets the estimate of the amplitude A, by which the code discriminator is normalised.
   void set_amplitude_estimate(double amplitude);
 
-  /// The block's sum of I^2 + Q^2, and the mean of cos 2x: (I^2 - Q^2)/(I^2 + Q^2) averaged over 1 s.
+  /// Returns the block's sum of I^2 + Q^2, and the mean of cos 2x: (I^2 - Q^2)/(I^2 + Q^2) averaged over 1 s.
   [[nodiscard]] double power() const { return power_; }
   [[nodiscard]] double cos_2x() const { return cos_2x_; }
   [[nodiscard]] const LoopSnapshot& last() const { return last_; }
-  /// The code's range predicted to the next update.
+  /// Returns the code's range predicted to the next update.
   [[nodiscard]] double predicted_code_m() const { return code_m_; }
-  /// Phase of the received range minus that of the loop at the last update, whole cycles included: for the bits of the
-  /// message, whose sign depends on its half cycles.
+  /// Returns the phase of the received range minus that of the loop at the last update, whole cycles included: for the
+  /// bits of the message, whose sign depends on its half cycles.
   [[nodiscard]] double phase_error_cycles() const { return phase_error_cycles_; }
   [[nodiscard]] LoopMode mode() const { return mode_; }
 
@@ -94,10 +94,10 @@ class TrackingLoops {
   double gain_acceleration_, gain_rate_, gain_phase_;
 
   LoopMode mode_ = LoopMode::kPullIn;
-  double phase_ = 0.0;  ///< cycles, predicted to the next update, as the following
+  double phase_ = 0.0;  ///< phase predicted to the next update, cycles; so are the following
   double rate_ = 0.0;   ///< at the last update
   double acceleration_ = 0.0;
-  double correction_ = 0.0;  ///< of the phase by the last update
+  double correction_ = 0.0;  ///< correction of the phase by the last update
   double code_m_ = 0.0;
   double amplitude_estimate_ = 0.0;
   double code_gain_ = 0.0;

@@ -17,7 +17,7 @@ namespace vbar::grand::bench {
 namespace {
 
 constexpr std::int64_t kBlock_ms = RfBlock::kLength.ns / 1'000'000;
-constexpr double kPeriod_ms = 1.0;  // of the C/A code
+constexpr double kPeriod_ms = 1.0;  // period of the C/A code
 
 // Sums are kept with this number of units to one standard deviation of the noise: 11 signals of 50 dB-Hz and 5 sigma of
 // noise stay below 2^15.
@@ -57,10 +57,10 @@ std::uint64_t cycle_fraction(double cycles) {
 }  // namespace
 
 struct Baseband::Tables {
-  std::array<std::array<std::uint16_t, kCaCodeChips>, kCaCodes> half_cycles{};  ///< of each chip of each code
+  std::array<std::array<std::uint16_t, kCaCodeChips>, kCaCodes> half_cycles{};  ///< half cycle of each chip
   std::array<double, kPhases> cosine{};
   std::array<std::int32_t, kNoiseLevels> noise{};  ///< quantiles, in units of the sums
-  std::array<std::uint32_t, kPhases> carrier{};    ///< of the signal being added
+  std::array<std::uint32_t, kPhases> carrier{};    ///< carrier of the signal being added
 
   Tables() {
     for (int prn = 1; prn <= kCaCodes; ++prn)
@@ -94,11 +94,11 @@ struct Baseband::Tables {
 struct Baseband::Chunk {
   const std::array<std::uint16_t, kCaCodeChips>* half_cycles = nullptr;
   std::size_t first = 0;    ///< sample of the block
-  std::uint64_t phase = 0;  ///< of the carrier at the first sample, 2^-64 cycles
+  std::uint64_t phase = 0;  ///< phase of the carrier at the first sample, 2^-64 cycles
   std::uint64_t phase_step = 0;
   std::uint64_t code = 0;  ///< chips since the period began, 2^-52
   std::uint64_t code_step = 0;
-  std::array<bool, 3> bits{};  ///< of the message in the code's period at the first sample and in the next two
+  std::array<bool, 3> bits{};  ///< message bits in the code's period at the first sample and in the next two
 };
 
 void check(const BasebandSettings& settings) {

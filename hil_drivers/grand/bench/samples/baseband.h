@@ -26,7 +26,8 @@ struct BasebandSettings {
   bool noise = true;                 ///< without it the signals keep their amplitude
 };
 
-/// Throws std::invalid_argument: one sentence with the setting, what was found and what is accepted.
+/// Throws std::invalid_argument for invalid settings: one sentence with the setting, the value found and those
+/// accepted.
 void check(const BasebandSettings& settings);
 
 class Baseband {
@@ -39,7 +40,7 @@ class Baseband {
   Baseband(const Baseband&) = delete;
   Baseband& operator=(const Baseband&) = delete;
 
-  /// The samples of one block, valid until the next call. Signals other than GPS L1 are not radiated. Throws
+  /// Returns the samples of one block, valid until the next call. Signals other than GPS L1 are not radiated. Throws
   /// std::invalid_argument for a block that does not begin at a whole millisecond.
   std::span<const std::int8_t> samples(const RfBlock& block);
 
@@ -57,7 +58,7 @@ class Baseband {
   engine::RandomStream noise_;
   std::unique_ptr<Tables> tables_;
   std::size_t samples_per_ms_;
-  std::vector<std::uint32_t> sums_;  ///< of a block: I above Q, 16 bits each
+  std::vector<std::uint32_t> sums_;  ///< sums of a block: I above Q, 16 bits each
   std::vector<std::int8_t> output_;
 };
 

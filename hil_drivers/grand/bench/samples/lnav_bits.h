@@ -1,5 +1,5 @@
 #pragma once
-// The bits of the GPS navigation message, by the time at which they are transmitted.
+// Bits of the GPS navigation message, by the time at which they are transmitted.
 //
 // A frame is 30 s: subframes 1 to 3 with the satellite's broadcast set, page 18 (ionosphere and UTC) in every subframe
 // 4, a page without content in every subframe 5. The 25 pages of a real master frame are not cycled: page 18 would come
@@ -22,22 +22,22 @@ class LnavBits {
   /// `constellation` must not be null.
   explicit LnavBits(std::shared_ptr<const twins::gnss::Constellation> constellation);
 
-  /// The bit that `satellite` transmits at `time_ms` of its own time, ms of GPS time since 1980. Throws
+  /// Returns the bit that `satellite` transmits at `time_ms` of its own time, ms of GPS time since 1980. Throws
   /// std::out_of_range for a satellite that the constellation does not have or a number that does not fit the message.
   [[nodiscard]] bool bit(twins::gnss::SatelliteId satellite, std::int64_t time_ms);
 
-  /// Subframe number `number` since 1980, each 6 s, of the same clock.
+  /// Returns subframe number `number` since 1980, each 6 s, of the same clock.
   [[nodiscard]] const twins::gnss::TransmittedSubframe& subframe(twins::gnss::SatelliteId satellite,
                                                                  std::int64_t number);
 
  private:
-  // The subframes with even and with odd numbers that were used last.
+  // Subframes with even and with odd numbers that were used last.
   struct Cached {
     std::int64_t number = -1;
     twins::gnss::TransmittedSubframe words{};
   };
   struct Satellite {
-    std::size_t index = 0;  ///< of the constellation
+    std::size_t index = 0;  ///< index in the constellation
     bool present = false;
     std::array<Cached, 2> cached;
   };

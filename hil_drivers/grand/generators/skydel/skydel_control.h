@@ -1,5 +1,5 @@
 #pragma once
-// The control connection to one Skydel instance.
+// Control connection to one Skydel instance.
 
 #include <chrono>
 #include <cstdint>
@@ -17,8 +17,8 @@ class SkydelControl {
   /// Connects and exchanges the version of the API. Throws std::runtime_error, as all functions below.
   SkydelControl(const std::string& host, std::uint16_t port, std::chrono::milliseconds answer_limit);
 
-  /// Sends a command and returns its result, which must have the name `expected`. `more_time`: what the command may
-  /// take beyond the limit of every answer.
+  /// Sends a command and returns its result, which must have the name `expected`. `more_time` is the time that the
+  /// command may take beyond the limit of every answer.
   wire::Json call(std::string_view name, const wire::Json& fields = wire::Json::object(),
                   std::string_view expected = "SuccessResult", std::chrono::milliseconds more_time = {});
 

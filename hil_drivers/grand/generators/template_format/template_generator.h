@@ -1,5 +1,5 @@
 #pragma once
-// A generator whose datagrams and control lines the mission file describes (IFEN: no interface document is public).
+// Generator whose datagrams and control lines the mission file describes (IFEN: no interface document is public).
 
 #include "hil_drivers/grand/generators/generator.h"
 

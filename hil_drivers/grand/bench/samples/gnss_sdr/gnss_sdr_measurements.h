@@ -1,8 +1,8 @@
 #pragma once
-// What gnss-sdr measures on the baseband samples of a vehicle, as the measurements of a receiver
+// Measurements of gnss-sdr on the baseband samples of a vehicle, as the measurements of a receiver
 // (../../receiver/measurements.h). In real time only; not deterministic.
 //
-// Ranges, phases, Doppler and C/N0 are gnss-sdr's. A subframe is taken if it is, bit for bit, one that the satellite
+// Ranges, phases, Doppler and C/N0 are gnss-sdr's. A subframe is accepted if it is, bit for bit, one that the satellite
 // transmitted; the position is computed from both (own_solution.h).
 
 #include <cstdint>
@@ -22,7 +22,7 @@ namespace vbar::grand::bench {
 
 struct GnssSdrSettings {
   std::string program = "gnss-sdr";
-  std::filesystem::path directory{};  ///< of its files
+  std::filesystem::path directory{};  ///< directory of its files
   int channels = 10;
   BasebandSettings samples{};
 };
@@ -34,7 +34,8 @@ class GnssSdrMeasurements final : public Measurements {
                       std::uint64_t seed, const std::string& vehicle);
 
   void restart(StoredData stored) override;
-  /// Throws std::runtime_error, one sentence, if gnss-sdr cannot be started, has ended or is too slow.
+  /// Advances by a block. Throws std::runtime_error, one sentence, if gnss-sdr cannot be started, has ended or is too
+  /// slow.
   void advance(const RfBlock& block, double cn0_offset_db, const Listener& listener) override;
 
   [[nodiscard]] twins::gnss::oem::TimeStatus time_status() const override { return status_; }
@@ -48,14 +49,14 @@ class GnssSdrMeasurements final : public Measurements {
   [[nodiscard]] bool new_corrections() const override { return new_corrections_; }
   void report(ReceiverReport& report) const override;
 
-  /// Of samples that gnss-sdr has not taken yet, after it was given what it takes now: a program that is not bound to
-  /// real time waits for it.
+  /// Duration of the samples that gnss-sdr has not read yet, after it was given those it reads now: a program that is
+  /// not bound to real time waits for it.
   [[nodiscard]] double seconds_behind();
 
  private:
   struct Reception {
     MessageReception message;
-    std::array<std::int64_t, 3> frames{-1, -1, -1};  ///< of 30 s, in which subframes 1 to 3 were received last
+    std::array<std::int64_t, 3> frames{-1, -1, -1};  ///< frames of 30 s in which subframes 1 to 3 came last
   };
 
   void send(const RfBlock& block, double cn0_offset_db);
@@ -82,7 +83,7 @@ class GnssSdrMeasurements final : public Measurements {
   bool corrections_known_ = false;
   bool new_corrections_ = false;
   std::vector<std::size_t> new_sets_;
-  RfBlock block_;  ///< with the offset of C/N0
+  RfBlock block_;  ///< block with the offset of C/N0
 };
 
 }  // namespace vbar::grand::bench

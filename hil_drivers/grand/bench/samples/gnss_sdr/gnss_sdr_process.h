@@ -1,5 +1,5 @@
 #pragma once
-// gnss-sdr as a child process: samples go in by a FIFO, datagrams come out on the loopback interface.
+// gnss-sdr as a child process: samples are written to a FIFO, datagrams are received on the loopback interface.
 
 #include <cstdint>
 #include <deque>
@@ -31,10 +31,10 @@ class GnssSdrProcess {
 
   /// Writes what the FIFO accepts now.
   void flush();
-  /// Of samples that wait for the FIFO.
+  /// Duration of the samples that wait for the FIFO.
   [[nodiscard]] double seconds_behind() const;
 
-  /// The next datagram of either kind, or nothing; valid until the next call.
+  /// Returns the next datagram of either kind, or nothing; valid until the next call.
   std::optional<std::span<const std::uint8_t>> observables();
   std::optional<std::span<const std::uint8_t>> navigation();
 

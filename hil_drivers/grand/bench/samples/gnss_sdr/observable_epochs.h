@@ -1,5 +1,5 @@
 #pragma once
-// Observables of channels, one by one, collected into epochs.
+// Collection of the observables of channels, which come one by one, into epochs.
 
 #include <cstdint>
 #include <map>
@@ -10,12 +10,12 @@
 
 namespace vbar::grand::bench {
 
-/// An epoch of the receiver's clock with all its valid observables, in order of satellite.
+/// Epoch of the receiver's clock with all its valid observables, in order of satellite.
 struct ObservableEpoch {
-  std::int64_t rx_time_ms = 0;  ///< of the GPS week
+  std::int64_t rx_time_ms = 0;  ///< time of the GPS week
   struct Satellite {
     Observable observable;
-    std::int64_t locked_ms = 0;         ///< since then without interruption
+    std::int64_t locked_ms = 0;         ///< begin of the lock without interruption
     double carrier_phase_cycles = 0.0;  ///< near the pseudorange: a whole number of cycles has been added at lock
   };
   std::vector<Satellite> satellites;
@@ -27,8 +27,8 @@ class ObservableEpochs {
   ObservableEpochs(int channels, int interval_ms) : channels_(channels), interval_ms_(interval_ms) {}
 
   void take(const Observable& observable);
-  /// The next epoch that is complete: every channel has sent, or half a second of later epochs has come. Epochs come in
-  /// order; what arrives for one that has passed is ignored.
+  /// Returns the next epoch that is complete: every channel has sent, or half a second of later epochs has come. Epochs
+  /// come in order; observables of an epoch that has passed are ignored.
   std::optional<ObservableEpoch> next();
 
  private:

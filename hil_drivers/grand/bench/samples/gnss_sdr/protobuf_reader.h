@@ -1,6 +1,6 @@
 #pragma once
-// The fields of one message in Protocol Buffers wire format (protobuf.dev, "Encoding"), as a bounded reader of foreign
-// datagrams: nothing is allocated, and whatever is malformed ends it.
+// Fields of one message in Protocol Buffers wire format (protobuf.dev, "Encoding"), read within bounds from foreign
+// datagrams: nothing is allocated, and a malformed field ends the message.
 
 #include <bit>
 #include <cstdint>
@@ -13,7 +13,8 @@ class ProtobufReader {
  public:
   explicit ProtobufReader(std::span<const std::uint8_t> bytes) : rest_(bytes) {}
 
-  /// Of the four wire types that are in use; `number` of a varint or a fixed number, `bytes` of a string or a message.
+  /// Field of one of the four wire types that are in use; `number` is that of a varint or a fixed number, `bytes` those
+  /// of a string or a message.
   struct Field {
     enum class Type : std::uint8_t { kVarint = 0, kFixed64 = 1, kBytes = 2, kFixed32 = 5 };
     std::uint64_t tag = 0;
@@ -25,9 +26,9 @@ class ProtobufReader {
     [[nodiscard]] bool is_varint() const { return type == Type::kVarint; }
   };
 
-  /// The next field; nothing at the end or where the bytes are malformed.
+  /// Returns the next field; nothing at the end or where the bytes are malformed.
   std::optional<Field> next();
-  /// Whether the end was reached without a malformed field.
+  /// Returns true if the end was reached without a malformed field.
   [[nodiscard]] bool complete() const { return !malformed_ && rest_.empty(); }
 
  private:
