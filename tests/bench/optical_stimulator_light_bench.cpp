@@ -11,9 +11,9 @@
 
 namespace {
 
-namespace os = vbar::optical_stimulator::bench;
+namespace emulated = vbar::optical_stimulator::bench;
 
-constexpr vbar::twins::camera::Region kRegion{710, 152, 500, 848}, kWhole{0, 0, 1920, 1200};
+constexpr vbar::twins::camera::Region kLightRegion{710, 152, 500, 848}, kWhole{0, 0, 1920, 1200};
 
 std::vector<std::uint8_t> frame_of(bool is_lit_all_over) {
   std::vector<std::uint8_t> counts(1920 * 1200, is_lit_all_over ? 60 : 0);
@@ -28,18 +28,18 @@ std::vector<std::uint8_t> frame_of(bool is_lit_all_over) {
   return counts;
 }
 
-os::BenchSettings settings() {
-  return os::read_bench(vbar::mission::data_directory() / "benches/optical_stimulator.toml", {});
+emulated::BenchSettings settings() {
+  return emulated::read_bench(vbar::mission::data_directory() / "benches/optical_stimulator.toml", {});
 }
 
 void light(benchmark::State& state, bool is_lit_all_over, const vbar::twins::camera::Region& region) {
-  const os::BenchSettings bench = settings();
-  const auto camera = os::camera_of(bench, vbar::mission::data_directory());
-  const os::ErrorField field(bench.field, 1, 1920, 1200);
-  const os::BenchOptics optics(bench.lenses, bench.pose, bench.optics, field, camera, 1920, 1200);
-  os::LightPath path({1920, 1200, bench.light, camera, 1}, optics);
+  const emulated::BenchSettings bench = settings();
+  const auto camera = emulated::camera_of(bench, vbar::mission::data_directory());
+  const emulated::ErrorField field(bench.field, 1, 1920, 1200);
+  const emulated::BenchOptics optics(bench.lenses, bench.pose, bench.optics, field, camera, 1920, 1200);
+  emulated::LightPath path({1920, 1200, bench.light, camera, 1}, optics);
   const std::vector<std::uint8_t> counts = frame_of(is_lit_all_over);
-  const os::ShownFrame frame{counts, 1.0};
+  const emulated::ShownFrame frame{counts, 1.0};
   vbar::twins::camera::PhotonImage image{region, {}};
   path.expose({&frame, 1}, 0.2, 1.0, image);
   for (auto _ : state) {
@@ -47,8 +47,10 @@ void light(benchmark::State& state, bool is_lit_all_over, const vbar::twins::cam
     benchmark::DoNotOptimize(image.electrons.data());
   }
 }
-BENCHMARK_CAPTURE(light, stars, false, kRegion)->Name("os_bench/light/500x848_stars")->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(light, all, true, kRegion)
+BENCHMARK_CAPTURE(light, stars, false, kLightRegion)
+    ->Name("os_bench/light/500x848_stars")
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(light, all, true, kLightRegion)
     ->Name("os_bench/light/500x848_lit_all_over")
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(light, whole, true, kWhole)
@@ -56,13 +58,13 @@ BENCHMARK_CAPTURE(light, whole, true, kWhole)
     ->Unit(benchmark::kMillisecond);
 
 void expose(benchmark::State& state) {
-  const os::BenchSettings bench = settings();
-  os::OpticalPath path(bench, os::camera_of(bench, vbar::mission::data_directory()));
-  const os::Pictures pictures{{std::make_shared<const std::vector<std::uint8_t>>(frame_of(false)), 1.0}};
+  const emulated::BenchSettings bench = settings();
+  emulated::OpticalPath path(bench, emulated::camera_of(bench, vbar::mission::data_directory()));
+  const emulated::Pictures pictures{{std::make_shared<const std::vector<std::uint8_t>>(frame_of(false)), 1.0}};
   std::vector<std::uint16_t> dn;
   std::uint64_t number = 0;
   for (auto _ : state) {
-    path.expose(pictures, {kRegion, {0.2, 0.0, 64.0}}, {40.0, 34.29}, {}, number++, dn);
+    path.expose(pictures, {kLightRegion, {0.2, 0.0, 64.0}}, {40.0, 34.29}, {}, number++, dn);
     benchmark::DoNotOptimize(dn.data());
   }
 }

@@ -76,16 +76,4 @@ void crc16_of_boost(benchmark::State& state) {
 }
 BENCHMARK(crc16_of_boost)->Name("crc16/boost/1400");
 
-void cobs_round_trip(benchmark::State& state) {
-  const auto bytes = some_bytes();
-  std::array<std::uint8_t, link::kMaxCobsFrameBytes> coded{};
-  link::CobsDecoder decoder;
-  for (auto _ : state) {
-    const auto size = link::cobs_encode(bytes, coded);
-    for (std::size_t i = 0; i < size.value(); ++i) benchmark::DoNotOptimize(decoder.push(coded[i]));
-  }
-  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(bytes.size()));
-}
-BENCHMARK(cobs_round_trip)->Name("cobs_round_trip/vbar/1400");
-
 }  // namespace

@@ -21,7 +21,7 @@ namespace {
 using vbar::fsw::Vector3;
 namespace truth = vbar::truth;
 
-const std::string kData = vbar::tests::source_path("data");
+const std::string kDataFolder = vbar::tests::source_path("data");
 constexpr double kDay = 2455760.5;
 constexpr double kMinute = 1.0 / 1440.0;
 
@@ -64,10 +64,10 @@ BENCHMARK(third_body)->Name("third_body/vbar/both");
 /// radiation pressure; tolerance 1e-12.
 void day_in_sunlight(benchmark::State& state, truth::Shadow shadow) {
   constexpr double kDegree = M_PI / 180.0;
-  const auto model = truth::load_gravity_coefficients(kData + "/gravity/ggm05s_120.txt", 60);
+  const auto model = truth::load_gravity_coefficients(kDataFolder + "/gravity/ggm05s_120.txt", 60);
   const auto gravity = std::make_shared<const truth::GravityField>(model, 60, 60);
   const auto orientation = std::make_shared<const truth::EarthOrientationSeries>(
-      truth::EarthOrientationSeries::load(kData + "/earth/eop_2009_2013.csv"));
+      truth::EarthOrientationSeries::load(kDataFolder + "/earth/eop_2009_2013.csv"));
   truth::SurfaceProperties surface;
   surface.mass_kg = 154.0;
   surface.radiation_area_m2 = 2.5;

@@ -15,7 +15,7 @@ namespace {
 
 namespace truth = vbar::truth;
 
-constexpr double kGm = 3.986004415e14, kRadius = 6378136.3;
+constexpr double kTideGm = 3.986004415e14, kTideRadius = 6378136.3;
 
 /// A force asked along an orbit as an integrator does, some seconds apart.
 void along_an_orbit(benchmark::State& state, truth::Force& force) {
@@ -35,14 +35,14 @@ void along_an_orbit(benchmark::State& state, truth::Force& force) {
 
 void solid_tides(benchmark::State& state) {
   truth::SolidTidesForce force(
-      kGm, kRadius, truth::TideSystem::kZeroTide, truth::gps_from_utc("2011-07-18T01:00:00Z"),
+      kTideGm, kTideRadius, truth::TideSystem::kZeroTide, truth::gps_from_utc("2011-07-18T01:00:00Z"),
       std::make_shared<const truth::EarthOrientationSeries>(
           truth::EarthOrientationSeries::load(vbar::tests::source_path("data/earth/eop_2009_2013.csv"))));
   along_an_orbit(state, force);
 }
 
 void relativity(benchmark::State& state) {
-  truth::RelativityForce force(kGm);
+  truth::RelativityForce force(kTideGm);
   along_an_orbit(state, force);
 }
 

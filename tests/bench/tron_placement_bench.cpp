@@ -16,7 +16,7 @@ namespace {
 using namespace vbar;
 using namespace vbar::tron;
 
-const BenchFile& bench() {
+const BenchFile& tron_bench_file() {
   static const BenchFile file = read_bench_file(tests::source_path("data/benches/tron.toml"));
   return file;
 }
@@ -26,7 +26,7 @@ Posture posture() {
 }
 
 void inverse_vbar(benchmark::State& state) {
-  const Arm arm(bench().camera_robot.design);
+  const Arm arm(tron_bench_file().camera_robot.design);
   const Eigen::Isometry3d T = arm.forward(posture().camera_rad);
   for (auto _ : state) benchmark::DoNotOptimize(arm.inverse(T));
 }
@@ -35,7 +35,7 @@ BENCHMARK(inverse_vbar)->Name("tron_inverse_8_branches/vbar");
 #ifdef VBAR_HAVE_KDL
 /// One branch, from joints 0.2 rad off.
 void inverse_kdl(benchmark::State& state) {
-  const ArmDesign& arm = bench().camera_robot.design;
+  const ArmDesign& arm = tron_bench_file().camera_robot.design;
   const KDL::Vector x(1, 0, 0), z(0, 0, 1);
   using KDL::Frame;
   using KDL::Joint;
@@ -61,18 +61,19 @@ BENCHMARK(inverse_kdl)->Name("tron_inverse_1_branch/kdl_lma");
 #endif
 
 void collision(benchmark::State& state) {
-  const BenchBodies bodies(bench());
+  const BenchBodies bodies(tron_bench_file());
   for (auto _ : state) benchmark::DoNotOptimize(bodies.collision(bodies.at(posture())));
 }
 BENCHMARK(collision)->Name("tron_collision_of_a_posture");
 
 /// From one scene to the next, 5 deg of tumbling away.
 void placement(benchmark::State& state) {
-  const BenchBodies bodies(bench());
-  const PathPlanner paths(bench(), bodies);
-  const PlacementSearch search(bench(), bodies, paths, bodies.points_to_see(tests::source_path("data")),
+  const BenchBodies bodies(tron_bench_file());
+  const PathPlanner paths(tron_bench_file(), bodies);
+  const PlacementSearch search(tron_bench_file(), bodies, paths, bodies.points_to_see(tests::source_path("data")),
                                {.trials = static_cast<int>(state.range(0))});
-  Posture at{Joints::Map(bench().camera_robot.home_rad.data()), Joints::Map(bench().target_robot.home_rad.data()), 4.0};
+  Posture at{Joints::Map(tron_bench_file().camera_robot.home_rad.data()),
+             Joints::Map(tron_bench_file().target_robot.home_rad.data()), 4.0};
   std::int64_t number = 0;
   int taken = 0;
   for (auto _ : state) {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "fuzz_target.h"
 #include "hil_drivers/grand/bench/generator/fault.h"
 #include "host_sim/mission/mission_error.h"
+#include "tests/fuzz/fuzz_target.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace vbar::grand::bench;

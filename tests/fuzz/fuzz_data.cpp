@@ -7,7 +7,6 @@
 #include <string>
 #include <system_error>
 
-#include "fuzz_file.h"
 #include "host_sim/mission/body_file.h"
 #include "host_sim/sensors/camera/camera_file.h"
 #include "host_sim/truth/atmosphere/nrlmsise00_tables.h"
@@ -17,6 +16,7 @@
 #include "host_sim/twins/camera/star_sky.h"
 #include "host_sim/twins/gnss/ephemeris_file.h"
 #include "host_sim/twins/gnss/signal_noise.h"
+#include "tests/fuzz/fuzz_file.h"
 
 namespace {
 

@@ -5,9 +5,9 @@
 #include <exception>
 #include <string_view>
 
-#include "fuzz_target.h"
 #include "host_sim/truth/earth/orientation_formats/orientation_formats.h"
 #include "host_sim/truth/earth/weather_formats/weather_formats.h"
+#include "tests/fuzz/fuzz_target.h"
 
 namespace {
 

@@ -5,8 +5,8 @@
 #include <exception>
 #include <string_view>
 
-#include "fuzz_target.h"
 #include "host_sim/twins/gnss/formats/ephemeris_formats.h"
+#include "tests/fuzz/fuzz_target.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace vbar::twins::gnss;

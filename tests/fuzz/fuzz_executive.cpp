@@ -14,7 +14,7 @@
 
 #include "boards/common/flight_executive.h"
 #include "fsw/packets/messages.h"
-#include "fuzz_target.h"
+#include "tests/fuzz/fuzz_target.h"
 #include "tests/unit/boards/common/fake_gnc.h"
 
 namespace {

@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "fsw/packets/messages.h"
-#include "fuzz_target.h"
 #include "hil_drivers/external/exchange.h"
+#include "tests/fuzz/fuzz_target.h"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include "fsw/link/cobs.h"
 #include "fsw/link/frame.h"
 #include "fsw/packets/crc.h"
-#include "fuzz_target.h"
+#include "tests/fuzz/fuzz_target.h"
 
 namespace {
 

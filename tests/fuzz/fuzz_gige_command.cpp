@@ -4,9 +4,9 @@
 
 #include <stdexcept>
 
-#include "fuzz_target.h"
 #include "hil_drivers/gige/device/registers.h"
 #include "hil_drivers/gige/wire/gvcp.h"
+#include "tests/fuzz/fuzz_target.h"
 
 namespace {
 

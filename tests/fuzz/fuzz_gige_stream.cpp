@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "fuzz_target.h"
 #include "hil_drivers/gige/camera/pixel_padding.h"
 #include "hil_drivers/gige/wire/gvsp.h"
+#include "tests/fuzz/fuzz_target.h"
 
 namespace {
 

@@ -15,7 +15,7 @@
 #include "fsw/gnc/vbar_gnc.h"
 #include "fsw/packets/big_endian.h"
 #include "fsw/packets/messages.h"
-#include "fuzz_target.h"
+#include "tests/fuzz/fuzz_target.h"
 
 namespace {
 

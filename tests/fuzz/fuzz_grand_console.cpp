@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "fsw/gnss/oem_stream.h"
-#include "fuzz_target.h"
 #include "hil_drivers/grand/bench/receiver/receiver.h"
+#include "tests/fuzz/fuzz_target.h"
 #include "tests/support/gnss_scene.h"
 #include "tests/unit/fsw/gnss/oem_bytes_writer.h"
 

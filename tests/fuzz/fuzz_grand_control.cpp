@@ -7,11 +7,11 @@
 #include <string_view>
 #include <utility>
 
-#include "fuzz_target.h"
 #include "hil_drivers/grand/bench/control/skydel_commands.h"
 #include "hil_drivers/grand/wire/simgen.h"
 #include "hil_drivers/grand/wire/template_format.h"
 #include "hil_drivers/wire/line_buffer.h"
+#include "tests/fuzz/fuzz_target.h"
 
 namespace {
 

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "fuzz_target.h"
 #include "hil_drivers/grand/bench/samples/gnss_sdr/monitor_datagrams.h"
 #include "hil_drivers/grand/bench/samples/gnss_sdr/observable_epochs.h"
+#include "tests/fuzz/fuzz_target.h"
 
 using namespace vbar::grand::bench;
 

@@ -3,10 +3,10 @@
 
 #include <string>
 
-#include "fuzz_target.h"
 #include "hil_drivers/grand/wire/simgen.h"
 #include "hil_drivers/grand/wire/skydel_hil.h"
 #include "hil_drivers/grand/wire/template_format.h"
+#include "tests/fuzz/fuzz_target.h"
 
 namespace {
 

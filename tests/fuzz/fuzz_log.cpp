@@ -3,8 +3,8 @@
 
 #include <stdexcept>
 
-#include "fuzz_file.h"
 #include "host_sim/twins/recorded_log.h"
+#include "tests/fuzz/fuzz_file.h"
 
 namespace {
 

@@ -3,9 +3,9 @@
 #include <string>
 #include <string_view>
 
-#include "fuzz_target.h"
 #include "host_sim/mission/mission_error.h"
 #include "host_sim/sensors/sensor_kinds.h"
+#include "tests/fuzz/fuzz_target.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "fuzz_target.h"
 #include "host_sim/orbit_files/orbit_file.h"
+#include "tests/fuzz/fuzz_target.h"
 
 namespace {
 

@@ -5,10 +5,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "fuzz_target.h"
 #include "hil_drivers/optical_stimulator/bench/faults/bench_fault.h"
 #include "hil_drivers/optical_stimulator/bench/screen/xwd.h"
 #include "host_sim/mission/mission_error.h"
+#include "tests/fuzz/fuzz_target.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace vbar::optical_stimulator::bench;

@@ -3,9 +3,9 @@
 
 #include <string_view>
 
-#include "fuzz_target.h"
 #include "hil_drivers/optical_stimulator/calibration_file/bench_calibration.h"
 #include "host_sim/mission/mission_error.h"
+#include "tests/fuzz/fuzz_target.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace vbar::optical_stimulator;

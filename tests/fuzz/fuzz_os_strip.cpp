@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
-#include "fuzz_target.h"
 #include "hil_drivers/optical_stimulator/self_check/windowed_centroid.h"
 #include "hil_drivers/optical_stimulator/strip/strip_reader.h"
+#include "tests/fuzz/fuzz_target.h"
 
 using namespace vbar::optical_stimulator;
 

@@ -11,7 +11,7 @@
 #include "fsw/packets/big_endian.h"
 #include "fsw/packets/messages.h"
 #include "fsw/packets/segmentation.h"
-#include "fuzz_target.h"
+#include "tests/fuzz/fuzz_target.h"
 
 namespace {
 

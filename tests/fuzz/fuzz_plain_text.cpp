@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
-#include "fuzz_target.h"
 #include "host_sim/files/plain_text.h"
 #include "host_sim/files/text_lines.h"
+#include "tests/fuzz/fuzz_target.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr std::size_t kLargest = 1 << 16;

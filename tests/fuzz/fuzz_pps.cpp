@@ -6,9 +6,9 @@
 #include <memory>
 #include <stdexcept>
 
-#include "fuzz_target.h"
 #include "hil_drivers/grand/pps/edge_clock.h"
 #include "hil_drivers/grand/wire/pps_datagram.h"
+#include "tests/fuzz/fuzz_target.h"
 
 namespace {
 

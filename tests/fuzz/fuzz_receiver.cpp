@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "fuzz_target.h"
+#include "tests/fuzz/fuzz_target.h"
 #include "tests/support/receiver_promises.h"
 #include "tests/unit/fsw/gnss/oem_bytes_writer.h"
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "fuzz_target.h"
 #include "hil_drivers/grand/bursts.h"
 #include "hil_drivers/grand/receiver_port/command_answer.h"
+#include "tests/fuzz/fuzz_target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   namespace grand = vbar::grand;

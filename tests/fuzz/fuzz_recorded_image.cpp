@@ -4,9 +4,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "fuzz_target.h"
 #include "host_sim/twins/camera/recorded_image.h"
 #include "host_sim/twins/camera/tile_restorer.h"
+#include "tests/fuzz/fuzz_target.h"
 
 namespace {
 

@@ -10,8 +10,8 @@
 
 #include <unistd.h>
 
-#include "fuzz_target.h"
 #include "host_sim/report/run_folder.h"
+#include "tests/fuzz/fuzz_target.h"
 
 namespace {
 

@@ -3,10 +3,10 @@
 
 #include <string>
 
-#include "fuzz_target.h"
 #include "hil_drivers/tron/bench/faults/bench_fault.h"
 #include "hil_drivers/tron/bench_file/bench_file.h"
 #include "host_sim/mission/mission_error.h"
+#include "tests/fuzz/fuzz_target.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace vbar::tron::bench;

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "fuzz_target.h"
 #include "hil_drivers/tron/eki/wire/documents.h"
+#include "tests/fuzz/fuzz_target.h"
 
 namespace {
 

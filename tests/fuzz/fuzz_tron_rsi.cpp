@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "fuzz_target.h"
 #include "hil_drivers/tron/rsi/wire/codec.h"
+#include "tests/fuzz/fuzz_target.h"
 
 namespace {
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "fuzz_target.h"
 #include "hil_drivers/tron/bench/lights/source_arbiter.h"
 #include "hil_drivers/tron/sacn/wire/data_packet.h"
+#include "tests/fuzz/fuzz_target.h"
 
 namespace {
 

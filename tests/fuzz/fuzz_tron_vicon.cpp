@@ -3,9 +3,9 @@
 
 #include <stdexcept>
 
-#include "fuzz_target.h"
 #include "hil_drivers/tron/vicon/frame_history.h"
 #include "hil_drivers/tron/vicon/wire/object_stream.h"
+#include "tests/fuzz/fuzz_target.h"
 
 namespace {
 

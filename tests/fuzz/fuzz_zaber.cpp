@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include "fuzz_target.h"
 #include "hil_drivers/wire/line_buffer.h"
 #include "hil_drivers/zaber/device/device.h"
+#include "tests/fuzz/fuzz_target.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace vbar::zaber;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLargestMove_m = 0.05;  // what a wrong fix may cost
 
-const CoastingPair& coast() {
+const CoastingPair& wrong_fix_coast() {
   static const CoastingPair pair(900);
   return pair;
 }
@@ -31,7 +31,7 @@ INSTANTIATE_TEST_SUITE_P(AfterEpochs, WrongFix, ::testing::Values(11, 13));
 // are enough for the others to outvote it.
 TEST_P(WrongFix, TheSecondBestIntegersAreFoundOut) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    EmulatedPair pair(coast(), seed);
+    EmulatedPair pair(wrong_fix_coast(), seed);
     pair.fly(GetParam());
     ASSERT_TRUE(pair.hold_second_best()) << seed;
     ASSERT_GT(pair.wrong_integers(), 0) << seed;
@@ -56,7 +56,7 @@ TEST_P(WrongFix, TheSecondBestIntegersAreFoundOut) {
 // next epoch contradicts them, everything is given up, and the position with it.
 TEST_P(WrongFix, AGrossMistakeIsGivenUpAtOnce) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    EmulatedPair pair(coast(), seed);
+    EmulatedPair pair(wrong_fix_coast(), seed);
     pair.fly(GetParam());
     ASSERT_TRUE(pair.hold_shifted(1.0)) << seed;
     ASSERT_GT(pair.wrong_integers(), 5) << seed;
@@ -85,7 +85,7 @@ TEST(UnseenSlips, NeverStayInAHeldInteger) {
   }
   std::int32_t found = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    EmulatedPair pair(coast(), seed, overrides);
+    EmulatedPair pair(wrong_fix_coast(), seed, overrides);
     bool was_fixed = false;
     while (!pair.done()) {
       pair.fly();

@@ -24,7 +24,7 @@ using testing::HasSubstr;
 using vbar::test::packet_count;
 using vbar::test::step_packets;
 
-constexpr std::uint32_t kSteps = 8;  // one of them takes more than a window of packets
+constexpr std::uint32_t kEmulatorSteps = 8;  // one of them takes more than a window of packets
 
 struct Flight {
   std::vector<Packet> outputs;
@@ -37,7 +37,7 @@ struct Flight {
 Flight fly_emulated(const FlightComputerOptions& options) {
   const auto computer = make_flight_computer(options);
   Flight flight;
-  for (std::uint32_t step = 0; step < kSteps; ++step) {
+  for (std::uint32_t step = 0; step < kEmulatorSteps; ++step) {
     const auto result = computer->step(step, step_packets(step, packet_count(step)));
     flight.outputs.insert(flight.outputs.end(), result.packets.begin(), result.packets.end());
     flight.instructions.push_back(result.report.count);
@@ -61,7 +61,7 @@ class Emulator : public testing::Test {
 TEST_F(Emulator, GivesTheSamePacketsAndTheSameCostOverUartAndEthernet) {
   const Flight uart = fly_emulated(echo_options(Target::kZynqQemu, LinkKind::kSerial));
   const Flight ethernet = fly_emulated(echo_options(Target::kZynqQemu, LinkKind::kUdp));
-  EXPECT_EQ(uart.outputs, expected_outputs(kSteps));
+  EXPECT_EQ(uart.outputs, expected_outputs(kEmulatorSteps));
   EXPECT_EQ(ethernet.outputs, uart.outputs);
   EXPECT_EQ(uart.unit, "instructions");
   EXPECT_EQ(ethernet.instructions, uart.instructions);
@@ -87,7 +87,7 @@ TEST_F(Emulator, ABadSerialLineChangesNoPacket) {
   options.faults = {.seed = 6, .flip_bit_per_byte = 5e-5, .drop_byte_per_byte = 5e-5};
   options.timing.poll_after = std::chrono::milliseconds(200);
   const Flight bad = fly_emulated(options);
-  EXPECT_EQ(bad.outputs, expected_outputs(kSteps));
+  EXPECT_EQ(bad.outputs, expected_outputs(kEmulatorSteps));
   EXPECT_GT(bad.statistics.frames_rejected, 0U);
   EXPECT_GT(bad.statistics.frames_resent, 0U);
 }

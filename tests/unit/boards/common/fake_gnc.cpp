@@ -1,4 +1,4 @@
-#include "fake_gnc.h"
+#include "tests/unit/boards/common/fake_gnc.h"
 
 #include <cstring>
 #include <new>

@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "boards/common/flight_executive.h"
-#include "fake_gnc.h"
 #include "fsw/packets/messages.h"
-#include "reference_host.h"
+#include "tests/unit/boards/common/fake_gnc.h"
+#include "tests/unit/boards/common/reference_host.h"
 
 namespace vbar::testing {
 namespace {

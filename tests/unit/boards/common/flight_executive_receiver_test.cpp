@@ -10,10 +10,10 @@
 #include <gtest/gtest.h>
 
 #include "boards/common/flight_executive.h"
-#include "fake_gnc.h"
 #include "fsw/packets/big_endian.h"
 #include "fsw/packets/messages.h"
-#include "reference_host.h"
+#include "tests/unit/boards/common/fake_gnc.h"
+#include "tests/unit/boards/common/reference_host.h"
 
 namespace vbar::boards {
 namespace {

@@ -8,9 +8,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "fake_gnc.h"
 #include "fsw/packets/messages.h"
-#include "reference_host.h"
+#include "tests/unit/boards/common/fake_gnc.h"
+#include "tests/unit/boards/common/reference_host.h"
 
 namespace vbar::boards {
 namespace {

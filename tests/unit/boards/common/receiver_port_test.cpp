@@ -1,5 +1,5 @@
 // Bytes of a wired receiver between two ticks: nothing is lost or reordered below the ring's size, the newest is
-// dropped and counted above it, and the pieces are the packets that a host would have made.
+// dropped and counted_bytes above it, and the pieces are the packets that a host would have made.
 
 #include "boards/common/receiver_port.h"
 
@@ -8,16 +8,18 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/unit/boards/common/reference_host.h"
+
 namespace vbar::boards {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
+using testing::Bytes;
 
-constexpr std::uint8_t kSpacecraft = 9;
+constexpr std::uint8_t kPortSpacecraft = 9;
 constexpr fsw::GpsTime kStep{1'000'000'000'000'000'000};
 constexpr std::size_t kPieceBytes = 1280;  // vbar.lcm: gnss_bytes.data
 
-Bytes counted(std::size_t size, std::size_t first = 0) {
+Bytes counted_bytes(std::size_t size, std::size_t first = 0) {
   Bytes bytes(size);
   for (std::size_t i = 0; i < size; ++i) bytes[i] = static_cast<std::uint8_t>((first + i) * 31U >> 3U);
   return bytes;
@@ -36,7 +38,7 @@ Message message_in(const std::array<std::uint8_t, fsw::packets::kMaxPacketBytes>
 
 class ReceiverPortTest : public ::testing::Test {
  protected:
-  ReceiverPortTest() { port_->open(kSpacecraft); }
+  ReceiverPortTest() { port_->open(kPortSpacecraft); }
 
   /// All that is waiting, by the packets of one step; the sequence counts of these.
   Bytes cut(std::vector<std::uint16_t>* sequence_counts = nullptr) {
@@ -50,7 +52,7 @@ class ReceiverPortTest : public ::testing::Test {
       const auto input = message_in<gnss_bytes>(piece.input, piece.input_size, of_input);
       const auto mirror = message_in<wired_bytes>(piece.mirror, piece.mirror_size, of_mirror);
       EXPECT_EQ(of_input.time, kStep);
-      EXPECT_EQ(of_input.spacecraft, kSpacecraft);
+      EXPECT_EQ(of_input.spacecraft, kPortSpacecraft);
       EXPECT_EQ(of_input.unit, 0);
       EXPECT_EQ(of_mirror.time, of_input.time);
       EXPECT_EQ(of_mirror.spacecraft, of_input.spacecraft);
@@ -80,21 +82,21 @@ TEST_F(ReceiverPortTest, WithoutBytesThereIsNoPacket) {
 
 TEST_F(ReceiverPortTest, CutsAtThePacketsSizeAndNowhereElse) {
   for (const std::size_t size : {std::size_t{1}, kPieceBytes - 1, kPieceBytes, kPieceBytes + 1, 3 * kPieceBytes + 7}) {
-    port_->take(counted(size));
+    port_->take(counted_bytes(size));
     std::vector<std::uint16_t> sequence_counts;
-    EXPECT_EQ(cut(&sequence_counts), counted(size));
+    EXPECT_EQ(cut(&sequence_counts), counted_bytes(size));
     EXPECT_EQ(sequence_counts.size(), (size + kPieceBytes - 1) / kPieceBytes);
     EXPECT_EQ(port_->waiting(), 0U);
   }
 }
 
 TEST_F(ReceiverPortTest, APieceThatWasNotDeliveredComesAgain) {
-  port_->take(counted(2 * kPieceBytes));
+  port_->take(counted_bytes(2 * kPieceBytes));
   WiredPiece first, again;
   port_->next_piece(kStep, first);
   port_->next_piece(kStep, again);
   EXPECT_EQ(first.input, again.input);
-  EXPECT_EQ(cut(), counted(2 * kPieceBytes));
+  EXPECT_EQ(cut(), counted_bytes(2 * kPieceBytes));
 }
 
 // The ring's end is crossed at every place: the pieces are of a size that has no factor in common with the ring's.
@@ -102,9 +104,9 @@ TEST_F(ReceiverPortTest, ManyStepsKeepOrderAndContent) {
   std::size_t sent = 0;
   for (int step = 0; step < 400; ++step) {
     const std::size_t size = 2711 + 13U * static_cast<std::size_t>(step % 50);
-    port_->take(counted(size / 2, sent));
-    port_->take(counted(size - size / 2, sent + size / 2));
-    ASSERT_EQ(cut(), counted(size, sent)) << step;
+    port_->take(counted_bytes(size / 2, sent));
+    port_->take(counted_bytes(size - size / 2, sent + size / 2));
+    ASSERT_EQ(cut(), counted_bytes(size, sent)) << step;
     sent += size;
   }
   EXPECT_EQ(port_->received(), sent);
@@ -113,8 +115,8 @@ TEST_F(ReceiverPortTest, ManyStepsKeepOrderAndContent) {
 
 TEST_F(ReceiverPortTest, FullItDropsTheNewestAndCounts) {
   constexpr std::size_t kRing = ReceiverPort::kRingBytes;
-  port_->take(counted(kRing - 5));
-  port_->take(counted(20, kRing - 5));
+  port_->take(counted_bytes(kRing - 5));
+  port_->take(counted_bytes(20, kRing - 5));
   EXPECT_EQ(port_->received(), kRing + 15);
   EXPECT_EQ(port_->dropped(), 15U);
   EXPECT_EQ(port_->waiting(), kRing);
@@ -123,11 +125,11 @@ TEST_F(ReceiverPortTest, FullItDropsTheNewestAndCounts) {
   EXPECT_EQ(all.size(), ReceiverPort::kPacketsPerStep * kPieceBytes);
   const Bytes others = cut();
   all.insert(all.end(), others.begin(), others.end());
-  EXPECT_EQ(all, counted(kRing));
+  EXPECT_EQ(all, counted_bytes(kRing));
 }
 
 TEST_F(ReceiverPortTest, MoreThanTheRingAtOnceIsDroppedAndCounted) {
-  port_->take(counted(2 * ReceiverPort::kRingBytes));
+  port_->take(counted_bytes(2 * ReceiverPort::kRingBytes));
   EXPECT_EQ(port_->waiting(), ReceiverPort::kRingBytes);
   EXPECT_EQ(port_->dropped(), ReceiverPort::kRingBytes);
 }
@@ -137,7 +139,7 @@ TEST_F(ReceiverPortTest, SequenceCountsNeverWrapWithinAStep) {
   std::uint16_t last = 0;
   bool has_wrapped = false;
   for (int step = 0; step < 2000; ++step) {
-    port_->take(counted(10 * kPieceBytes));
+    port_->take(counted_bytes(10 * kPieceBytes));
     std::vector<std::uint16_t> counts;
     cut(&counts);
     ASSERT_EQ(counts.size(), 10U);
@@ -150,8 +152,8 @@ TEST_F(ReceiverPortTest, SequenceCountsNeverWrapWithinAStep) {
 }
 
 TEST_F(ReceiverPortTest, ASessionBeginsEmpty) {
-  port_->take(counted(100));
-  port_->open(kSpacecraft);
+  port_->take(counted_bytes(100));
+  port_->open(kPortSpacecraft);
   EXPECT_EQ(port_->waiting(), 0U);
   EXPECT_EQ(port_->received(), 0U);
   EXPECT_EQ(cut(), Bytes{});

@@ -1,4 +1,4 @@
-#include "reference_host.h"
+#include "tests/unit/boards/common/reference_host.h"
 
 #include <algorithm>
 

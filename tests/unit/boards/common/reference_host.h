@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "boards/common/flight_executive.h"
-#include "fake_gnc.h"
 #include "fsw/link/cobs.h"
 #include "fsw/link/frame.h"
+#include "tests/unit/boards/common/fake_gnc.h"
 
 namespace vbar::testing {
 

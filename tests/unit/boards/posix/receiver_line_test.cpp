@@ -12,10 +12,12 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include "tests/unit/boards/common/reference_host.h"
+
 namespace vbar::boards::posix {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
+using testing::Bytes;
 
 /// The receiver's end of a pseudo-terminal.
 class Terminal {

@@ -7,12 +7,11 @@
 #include <gtest/gtest.h>
 
 #include "fsw/estimation/layout.h"
+#include "fsw/estimation/rows.h"
 #include "tests/support/allocation_counter.h"
 
 namespace vbar::fsw::estimation {
 namespace {
-
-constexpr double kNoGate = 1e300;
 
 struct Orbit {
   static constexpr int kSize = 6;

@@ -17,8 +17,8 @@ using test::Body;
 using test::Bytes;
 using test::overwrite;
 
-OemMessage log_of(std::uint16_t id, const Bytes& body) {
-  return test::log_of(id, body, start_of_week(1643));
+OemMessage raw_log_of(std::uint16_t id, const Bytes& body) {
+  return test::raw_log_of(id, body, start_of_week(1643));
 }
 
 /// One subframe of 240 bits, fields set by word and bit as the interface document numbers them.
@@ -94,7 +94,7 @@ TEST(RawEphemeris, GivesRealRecordsBack) {
     if (record.satellite.constellation != Constellation::kGps) continue;
     Bytes body = packed(record).body();
     overwrite(body, 0, Body().u32(record.satellite.prn).bytes);
-    const Result<Ephemeris> result = read_raw_ephemeris(log_of(kOemRawEphemeris, body));
+    const Result<Ephemeris> result = read_raw_ephemeris(raw_log_of(kOemRawEphemeris, body));
     ASSERT_EQ(result.status(), Status::kOk);
     const Ephemeris& e = result.value();
     EXPECT_EQ(e.satellite, record.satellite);
@@ -115,7 +115,7 @@ RawEphemeris example() {
 }
 
 Status status_of(const RawEphemeris& raw) {
-  return read_raw_ephemeris(log_of(kOemRawEphemeris, raw.body())).status();
+  return read_raw_ephemeris(raw_log_of(kOemRawEphemeris, raw.body())).status();
 }
 
 TEST(RawEphemeris, RefusesSubframesThatAreNotOneSet) {
@@ -145,7 +145,7 @@ TEST(RawEphemeris, TheWeekOfTransmissionMayBeTheOneBefore) {
   RawEphemeris raw = example();
   raw.week = 2048;
   raw.one.set(3, 1, 10, 1023);
-  const Result<Ephemeris> result = read_raw_ephemeris(log_of(kOemRawEphemeris, raw.body()));
+  const Result<Ephemeris> result = read_raw_ephemeris(raw_log_of(kOemRawEphemeris, raw.body()));
   ASSERT_TRUE(result.ok());
   EXPECT_EQ(result.value().toe, start_of_week(2048) + duration_of_seconds(raw.toe_s));
 }
@@ -163,13 +163,13 @@ TEST(RawEphemeris, RefusesAbsurdElements) {
   raw = example();
   Bytes body = raw.body();
   body.pop_back();
-  EXPECT_EQ(read_raw_ephemeris(log_of(kOemRawEphemeris, body)).status(), Status::kTooShort);
+  EXPECT_EQ(read_raw_ephemeris(raw_log_of(kOemRawEphemeris, body)).status(), Status::kTooShort);
   body = raw.body();
   overwrite(body, 0, Body().u32(193).bytes);  // QZSS
-  EXPECT_EQ(read_raw_ephemeris(log_of(kOemRawEphemeris, body)).status(), Status::kOutOfRange);
+  EXPECT_EQ(read_raw_ephemeris(raw_log_of(kOemRawEphemeris, body)).status(), Status::kOutOfRange);
   // All ones, all zeros.
-  EXPECT_NE(read_raw_ephemeris(log_of(kOemRawEphemeris, Bytes(102, 0xFF))).status(), Status::kOk);
-  EXPECT_NE(read_raw_ephemeris(log_of(kOemRawEphemeris, Bytes(102, 0))).status(), Status::kOk);
+  EXPECT_NE(read_raw_ephemeris(raw_log_of(kOemRawEphemeris, Bytes(102, 0xFF))).status(), Status::kOk);
+  EXPECT_NE(read_raw_ephemeris(raw_log_of(kOemRawEphemeris, Bytes(102, 0))).status(), Status::kOk);
 }
 
 }  // namespace

@@ -7,11 +7,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "campaign_text.h"
 #include "host_sim/campaign/plan.h"
 #include "host_sim/campaign/value_text.h"
 #include "host_sim/mission/mission_error.h"
 #include "tests/support/paths.h"
+#include "tests/unit/host_sim/campaign/campaign_text.h"
 
 namespace vbar::campaign {
 namespace {

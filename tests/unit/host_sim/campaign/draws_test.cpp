@@ -11,9 +11,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "campaign_text.h"
 #include "host_sim/campaign/value_text.h"
 #include "host_sim/engine/random_stream.h"
+#include "tests/unit/host_sim/campaign/campaign_text.h"
 
 namespace vbar::campaign {
 namespace {

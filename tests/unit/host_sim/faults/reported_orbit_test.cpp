@@ -15,7 +15,7 @@ namespace {
 
 constexpr fsw::orbit::QnsElements kServicer{.a = 7e6, .ex = 1e-3, .ey = 0.0, .i = 1.7, .raan = 0.3, .u = 0.0};
 
-fsw::GpsTime at(double s) {
+fsw::GpsTime time_at(double s) {
   return fsw::GpsTime{} + fsw::nearest_duration(1000.0 + s);
 }
 
@@ -34,16 +34,16 @@ telemetry_navigation navigation() {
 class ReportedOrbitTest : public testing::Test {
  protected:
   void report(double s, const telemetry_navigation& navigation) {
-    const std::vector<pil::Packet> packets{*encoder_.encode(at(s), navigation)};
+    const std::vector<pil::Packet> packets{*encoder_.encode(time_at(s), navigation)};
     reported_.take(packets);
   }
   /// The second of two telecommands, of which the first is none of the orbit's.
   std::pair<fsw::GpsTime, target_apriori> sent(double now_s) {
     target_apriori of_the_start{};
     of_the_start.mean_a_roe_m[0] = -1.0;
-    std::vector<pil::Packet> telecommands{*encoder_.encode(at(-1000.0), earth_configuration{}),
-                                          *encoder_.encode(at(-1000.0), of_the_start)};
-    const auto applied = reported_.applied_to(telecommands, at(now_s));
+    std::vector<pil::Packet> telecommands{*encoder_.encode(time_at(-1000.0), earth_configuration{}),
+                                          *encoder_.encode(time_at(-1000.0), of_the_start)};
+    const auto applied = reported_.applied_to(telecommands, time_at(now_s));
     EXPECT_EQ(applied.size(), 2U);
     EXPECT_EQ(applied[0], telecommands[0]);
     const auto packet = fsw::packets::parse_packet(applied[1]).value();
@@ -61,7 +61,7 @@ TEST_F(ReportedOrbitTest, IsThatOfTheLastTelemetry) {
   report(10.0, first);
   report(20.0, navigation());
   const auto [time, apriori] = sent(80.0);
-  EXPECT_EQ(time, at(20.0));
+  EXPECT_EQ(time, time_at(20.0));
   EXPECT_EQ(apriori.kind, target_apriori::kKindRoe);
   for (int k = 0; k < 6; ++k) EXPECT_EQ(apriori.mean_a_roe_m[k], 10.0 * (k + 1)) << k;
 }

@@ -15,7 +15,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-Clock::time_point soon() {
+Clock::time_point deadline() {
   return Clock::now() + std::chrono::seconds(5);
 }
 
@@ -65,7 +65,7 @@ TEST(SerialLine, ReportsThatTheOtherEndHasHungUp) {
   pty.master.reset();
   Bytes received;
   EXPECT_THROW(line.read_available(received), ChannelError);
-  EXPECT_THROW(line.write(Bytes{1, 2, 3}, soon()), ChannelError);
+  EXPECT_THROW(line.write(Bytes{1, 2, 3}, deadline()), ChannelError);
 }
 
 TEST(SerialLine, NamesADeviceThatDoesNotExist) {
@@ -80,12 +80,12 @@ TEST(SerialLine, NamesADeviceThatDoesNotExist) {
 TEST(SerialLine, WritesAndWaits) {
   const Pty pty = make_pty();
   SerialLine line(pty.slave_path, 115200);
-  line.write(Bytes{'a', 'b'}, soon());
+  line.write(Bytes{'a', 'b'}, deadline());
   Bytes at_master(2);
   EXPECT_EQ(::read(pty.master.get(), at_master.data(), at_master.size()), 2);
   EXPECT_EQ(at_master, (Bytes{'a', 'b'}));
   write_all(pty.master.get(), {'c'});
-  line.wait_for_input(soon());
+  line.wait_for_input(deadline());
   Bytes received;
   line.read_available(received);
   EXPECT_EQ(received, Bytes{'c'});

@@ -18,11 +18,11 @@
 namespace vbar::mission::test {
 namespace {
 
-const std::string kFile = vbar::tests::source_path("missions/experiment2.toml");
+const std::string kExperiment2File = vbar::tests::source_path("missions/experiment2.toml");
 
 TEST(Experiment2Mission, WaypointsAreThePapers) {
   // Table "End-to-end Mission ROE Waypoints".
-  const Mission mission = load_mission(kFile);
+  const Mission mission = load_mission(kExperiment2File);
   constexpr double kPaper[3][7] = {{39.0, -0.5, -10.0, 0.0, 2.0, 0.0, 1.0},
                                    {40.0, 0.0, -7.0, 1.0, 0.0, 2.0, 0.0},
                                    {41.25, 0.0, -8.5, 1.0, 0.0, 1.0, 0.0}};
@@ -38,14 +38,14 @@ TEST(Experiment2Mission, WaypointsAreThePapers) {
 }
 
 TEST(Experiment2Mission, EveryKeyOfNavigationByPosesIsExplained) {
-  expect_all_shown(text_of_file(kFile), kFile, {"navigation.pose", "navigation.apriori"});
+  expect_all_shown(text_of_file(kExperiment2File), kExperiment2File, {"navigation.pose", "navigation.apriori"});
 }
 
 /// What flight software is telecommanded about the camera by a mission file of this text.
 std::vector<twins::Packet> telecommand(const std::string& text) {
   static const auto orientation =
       truth::EarthOrientationSeries::load(vbar::tests::source_path("data/earth/eop_2009_2013.csv"));
-  const Mission mission = parse_mission(text, kFile);
+  const Mission mission = parse_mission(text, kExperiment2File);
   const Spacecraft& servicer = *mission.find_spacecraft("servicer");
   const fsw::orbit::CartesianState own{{7.0e6, 0.0, 0.0}, {0.0, 100.0, 7546.0}};
   const fsw::orbit::CartesianState target{own.position_eci + fsw::Vector3(1.0, 8.0, 3.0), own.velocity_eci};
@@ -86,7 +86,7 @@ std::map<std::string, ShownKey> shown_keys(const std::string& text) {
 
 // A key left out has the value that the file shows, or the one that it says is the default.
 TEST(Experiment2Mission, ShowsTheDefaults) {
-  const std::string text = text_of_file(kFile);
+  const std::string text = text_of_file(kExperiment2File);
   const std::map<std::string, ShownKey> keys = shown_keys(text);
   ASSERT_GE(keys.size(), 16U);
   int others = 0;
@@ -106,7 +106,7 @@ TEST(Experiment2Mission, ShowsTheDefaults) {
 }
 
 TEST(Experiment2Mission, FliesByTheCameraOfTheTestbed) {
-  const Mission mission = load_mission(kFile);
+  const Mission mission = load_mission(kExperiment2File);
   const Spacecraft& servicer = *mission.find_spacecraft("servicer");
   const auto* const camera = find_settings<sensors::CameraSensor>(servicer);
   ASSERT_NE(camera, nullptr);
@@ -117,7 +117,7 @@ TEST(Experiment2Mission, FliesByTheCameraOfTheTestbed) {
 }
 
 TEST(Experiment2Mission, AsPrintedDiffersInTheNodeOnly) {
-  const Mission mission = load_mission(kFile),
+  const Mission mission = load_mission(kExperiment2File),
                 printed = load_mission(vbar::tests::source_path("missions/experiment2_as_printed.toml"));
   fsw::orbit::QnsElements as_printed = std::get<OrbitByElements>(printed.find_spacecraft("servicer")->orbit).elements;
   const fsw::orbit::QnsElements& flown = std::get<OrbitByElements>(mission.find_spacecraft("servicer")->orbit).elements;

@@ -19,14 +19,14 @@ using grand::GrandSettings;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-const std::string kFile = vbar::tests::source_path("missions/experiment3_grand.toml");
+const std::string kExperiment3GrandFile = vbar::tests::source_path("missions/experiment3_grand.toml");
 const std::string kLive = vbar::tests::source_path("missions/experiment3_grand_live.toml");
 
 const GrandSettings& grand_of(const Mission& mission) {
   return dynamic_cast<const GrandSettings&>(*mission.testbeds.at(0).settings);
 }
 
-std::string refusal(const std::vector<std::string>& overrides, const std::string& file = kFile) {
+std::string refusal(const std::vector<std::string>& overrides, const std::string& file = kExperiment3GrandFile) {
   try {
     static_cast<void>(sensors::load_mission(file, overrides));
   } catch (const std::exception& error) {
@@ -36,12 +36,12 @@ std::string refusal(const std::vector<std::string>& overrides, const std::string
 }
 
 TEST(Experiment3GrandMission, EveryKeyOfTheTestbedIsExplained) {
-  const std::string text = text_of_file(kFile);
-  expect_all_shown(text, kFile, {"testbed.grand", "testbed.grand.skydel"});
+  const std::string text = text_of_file(kExperiment3GrandFile);
+  expect_all_shown(text, kExperiment3GrandFile, {"testbed.grand", "testbed.grand.skydel"});
 }
 
 TEST(Experiment3GrandMission, ShowsTheDefaults) {
-  const Mission shown = sensors::load_mission(kFile);
+  const Mission shown = sensors::load_mission(kExperiment3GrandFile);
   const Mission bare = sensors::parse_mission("extends = \"" + vbar::tests::source_path("missions/experiment3.toml") +
                                                   "\"\n[testbed.grand]\nbench = \"a bench\"\n",
                                               "bare.toml");
@@ -74,7 +74,7 @@ TEST(Experiment3GrandMission, LiveFollowsTheWallClock) {
   EXPECT_EQ(live.clock.speed_factor, 1.0);
   EXPECT_EQ(live.duration, fsw::duration_of_seconds(120));
   EXPECT_EQ(grand_of(live).pace, grand::Pace::kRealTime);
-  EXPECT_EQ(sensors::load_mission(kFile).clock.mode, engine::ClockMode::kLockStep);
+  EXPECT_EQ(sensors::load_mission(kExperiment3GrandFile).clock.mode, engine::ClockMode::kLockStep);
 }
 
 TEST(Experiment3GrandMission, GnssSdrReceivesForTenMinutesInRealTime) {

@@ -12,12 +12,12 @@
 namespace vbar::mission::test {
 namespace {
 
-const std::string kFile = vbar::tests::source_path("missions/experiment3.toml");
+const std::string kExperiment3File = vbar::tests::source_path("missions/experiment3.toml");
 const std::string kGrand = vbar::tests::source_path("missions/experiment3_grand.toml");
 
 TEST(Experiment3Mission, WaypointsAreThePapers) {
   // Table "End-to-end Mission ROE Waypoints".
-  const Mission mission = load_mission(kFile);
+  const Mission mission = load_mission(kExperiment3File);
   constexpr double kPaper[3][7] = {{39.0, -0.5, -10.0, 0.0, 2.0, 0.0, 1.0},
                                    {40.0, 0.0, -7.0, 1.0, 0.0, 2.0, 0.0},
                                    {41.25, 0.0, -8.5, 1.0, 0.0, 1.0, 0.0}};
@@ -37,14 +37,14 @@ TEST(Experiment3Mission, EveryKeyOfGnssIsExplained) {
   const std::string sensor = "spacecraft.servicer.sensors.gnss";
   // The keys of a receiver in a testbed are explained in the mission that has one.
   expect_all_shown(
-      text_of_file(kFile) + text_of_file(kGrand), kFile,
+      text_of_file(kExperiment3File) + text_of_file(kGrand), kExperiment3File,
       {sensor, sensor + ".visibility", sensor + ".link_budget", sensor + ".tracking", sensor + ".start",
        sensor + ".clock", sensor + ".body_frame", "navigation.carrier_phase", "constellation", "links.crosslink"});
 }
 
 // A mission without the tables has the same values, but for the loss of the crosslink, of which the file says so.
 TEST(Experiment3Mission, ShowsTheDefaults) {
-  const Mission shown = load_mission(kFile);
+  const Mission shown = load_mission(kExperiment3File);
   const twins::gnss::GnssReceiverSettings defaults;
   EXPECT_TRUE(sensor_of<GnssSensor>(shown).receiver == defaults);
   EXPECT_TRUE(sensor_of<GnssSensor>(shown, "target").receiver == defaults);
@@ -64,12 +64,12 @@ TEST(Experiment3Mission, ShowsTheDefaults) {
 
 // Appendix A: "GNSS Software Emulator" and "body-frame" tables.
 TEST(Experiment3Mission, ReceiverIsThePapers) {
-  const twins::gnss::GnssReceiverSettings receiver = sensor_of<GnssSensor>(load_mission(kFile)).receiver;
+  const twins::gnss::GnssReceiverSettings receiver = sensor_of<GnssSensor>(load_mission(kExperiment3File)).receiver;
   EXPECT_EQ(receiver.visibility.transmit_aperture_deg, 170.0);
   EXPECT_EQ(receiver.visibility.receiver_mask_deg, 190.0);
   EXPECT_EQ(receiver.visibility.horizon_mask_deg, -20.0);
   EXPECT_EQ(receiver.link_budget.lna_gain_db, 33.0);
-  EXPECT_EQ(load_mission(kFile).find_spacecraft("servicer")->mass_sigma_kg, 0.04);
+  EXPECT_EQ(load_mission(kExperiment3File).find_spacecraft("servicer")->mass_sigma_kg, 0.04);
   EXPECT_EQ(receiver.body_frame.com_radius_mm, 3.0);
   EXPECT_EQ(receiver.body_frame.pco_bias_mm, 5.0);
   EXPECT_EQ(receiver.body_frame.pco_noise_mm, 1.0);

@@ -9,7 +9,7 @@
 namespace vbar::mission::test {
 namespace {
 
-const Mission& mission() {
+const Mission& full_range() {
   static const Mission loaded = load_mission(vbar::tests::source_path("missions/full_range.toml"));
   return loaded;
 }
@@ -17,19 +17,19 @@ const Mission& mission() {
 // Its waypoints are those of the three experiments.
 TEST(FullRangeMission, WaypointsAreThoseOfIdealNavigation) {
   const Mission paper = load_mission(vbar::tests::source_path("missions/ideal_navigation.toml"));
-  ASSERT_EQ(mission().waypoints.size(), 11U);
+  ASSERT_EQ(full_range().waypoints.size(), 11U);
   ASSERT_EQ(paper.waypoints.size(), 11U);
   for (std::size_t k = 0; k < 11; ++k) {
-    EXPECT_EQ(mission().waypoints[k].index, paper.waypoints[k].index);
-    EXPECT_EQ(mission().waypoints[k].time - mission().epoch, paper.waypoints[k].time - paper.epoch) << k;
-    EXPECT_EQ(mission().waypoints[k].a_roe_m, paper.waypoints[k].a_roe_m) << k;
-    EXPECT_EQ(mission().waypoints[k].solver, paper.waypoints[k].solver) << k;
+    EXPECT_EQ(full_range().waypoints[k].index, paper.waypoints[k].index);
+    EXPECT_EQ(full_range().waypoints[k].time - full_range().epoch, paper.waypoints[k].time - paper.epoch) << k;
+    EXPECT_EQ(full_range().waypoints[k].a_roe_m, paper.waypoints[k].a_roe_m) << k;
+    EXPECT_EQ(full_range().waypoints[k].solver, paper.waypoints[k].solver) << k;
   }
-  EXPECT_EQ(mission().end_time(), mission().waypoints.back().time);
+  EXPECT_EQ(full_range().end_time(), full_range().waypoints.back().time);
 }
 
 TEST(FullRangeMission, OneCameraChangesItsUse) {
-  const Spacecraft& servicer = *mission().find_spacecraft("servicer");
+  const Spacecraft& servicer = *full_range().find_spacecraft("servicer");
   const auto* const far = sensors::navigation_camera(servicer, 0);
   const auto* const close = sensors::navigation_camera(servicer, 1);
   ASSERT_NE(far, nullptr);
@@ -42,7 +42,7 @@ TEST(FullRangeMission, OneCameraChangesItsUse) {
 }
 
 TEST(FullRangeMission, StepsBecomeShorterOnTheWay) {
-  const auto& parts = mission().step.parts();
+  const auto& parts = full_range().step.parts();
   ASSERT_EQ(parts.size(), 3U);
   EXPECT_EQ(parts[0].period, fsw::duration_of_seconds(60));
   EXPECT_EQ(parts[2].period, fsw::duration_of_seconds(5));

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace vbar::mission {
+namespace vbar::mission::test {
 namespace {
 
 const std::vector<std::string_view> kNames{"gravity_degree", "gravity_order", "threads", "seed"};
@@ -22,4 +22,4 @@ TEST(NearestName, GivesNoneForSomethingElse) {
 }
 
 }  // namespace
-}  // namespace vbar::mission
+}  // namespace vbar::mission::test

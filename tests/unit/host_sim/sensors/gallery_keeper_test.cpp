@@ -15,7 +15,7 @@ namespace {
 using testing::HasSubstr;
 
 // Waypoints at one and two hours; the run ends half an hour later. An exposure every minute, from minute one.
-constexpr const char* kMission = R"(
+constexpr const char* kGalleryMission = R"(
 [mission]
 step_s = 60.0
 duration_h = 2.5
@@ -50,18 +50,18 @@ a_roe_m = [0, -1e3, 0, 0, 0, 0]
 )";
 
 constexpr int kBearing = 0, kNoTarget = 5;
-constexpr twins::camera::Region kRegion{710, 200, 80, 50};  // 4000 pixels: 4 tiles of 868 and one of 528
+constexpr twins::camera::Region kImageRegion{710, 200, 80, 50};  // 4000 pixels: 4 tiles of 868 and one of 528
 constexpr fsw::Duration kMinute{60'000'000'000};
 
 std::vector<std::uint16_t> pattern(int number) {
   std::vector<std::uint16_t> dn;
-  for (int k = 0; k < kRegion.width * kRegion.height; ++k)
+  for (int k = 0; k < kImageRegion.width * kImageRegion.height; ++k)
     dn.push_back(static_cast<std::uint16_t>((k * 37 + number * 101) % 4096));
   return dn;
 }
 
 std::vector<std::uint8_t> png(std::vector<std::uint16_t> dn) {
-  const report::CameraPicture picture{kRegion.width, kRegion.height, dn};
+  const report::CameraPicture picture{kImageRegion.width, kImageRegion.height, dn};
   return report::png_of(picture, report::stretch_for(picture));
 }
 
@@ -71,7 +71,7 @@ class Gallery : public testing::Test {
   void fly_image(int minute, int status, const telemetry_objects* objects = nullptr, int lost_tile = -1) {
     const fsw::GpsTime exposure{mission_.start_time().ns + minute * kMinute.ns};
     const int number = minute - 1;
-    auto tiles = twins::camera::image_tiles({exposure, number, 1, 0}, kRegion, 12, pattern(number));
+    auto tiles = twins::camera::image_tiles({exposure, number, 1, 0}, kImageRegion, 12, pattern(number));
     if (lost_tile >= 0) tiles.erase(tiles.begin() + lost_tile);
     keeper_.on_inputs(exposure + kMinute, tiles);
     ImageRow row;
@@ -89,7 +89,7 @@ class Gallery : public testing::Test {
     return all;
   }
 
-  const mission::Mission mission_ = sensors::parse_mission(kMission, "m.toml");
+  const mission::Mission mission_ = sensors::parse_mission(kGalleryMission, "m.toml");
   GalleryKeeper keeper_{mission_, mission_.spacecraft[0]};
   std::vector<report::GalleryImage> pictures_;
   double range_m_ = 12345.6;
@@ -160,7 +160,7 @@ TEST_F(Gallery, ImageOfATestbedStandsBesideThatOfTheTwin) {
   const auto fly = [&](int minute, bool has_truth) {
     const fsw::GpsTime exposure{mission_.start_time().ns + minute * kMinute.ns};
     keeper.on_inputs(exposure + kMinute,
-                     twins::camera::image_tiles({exposure, minute - 1, 1, 0}, kRegion, 12, pattern(minute - 1)));
+                     twins::camera::image_tiles({exposure, minute - 1, 1, 0}, kImageRegion, 12, pattern(minute - 1)));
     ImageRow row;
     row.image = minute - 1;
     row.status = kBearing;
@@ -174,8 +174,9 @@ TEST_F(Gallery, ImageOfATestbedStandsBesideThatOfTheTwin) {
   ASSERT_EQ(pictures_.size(), 2U);
   EXPECT_EQ(asked, std::vector<std::int64_t>{0});
   const std::vector<std::uint16_t> testbed = pattern(0), twin = pattern(1);
-  const report::CameraPicture own{kRegion.width, kRegion.height, testbed};
-  EXPECT_EQ(pictures_[0].twin_png, report::png_of({kRegion.width, kRegion.height, twin}, report::stretch_for(own)))
+  const report::CameraPicture own{kImageRegion.width, kImageRegion.height, testbed};
+  EXPECT_EQ(pictures_[0].twin_png,
+            report::png_of({kImageRegion.width, kImageRegion.height, twin}, report::stretch_for(own)))
       << "stretched as the testbed's";
   EXPECT_FALSE(pictures_[0].difference.empty());
   EXPECT_FALSE(pictures_[0].difference_png.empty());
@@ -188,7 +189,7 @@ TEST_F(Gallery, TwinThatFailsDoesNotEndTheRun) {
                          throw std::runtime_error("no context");
                        });
   const fsw::GpsTime exposure{mission_.start_time().ns + kMinute.ns};
-  keeper.on_inputs(exposure, twins::camera::image_tiles({exposure, 0, 1, 0}, kRegion, 12, pattern(0)));
+  keeper.on_inputs(exposure, twins::camera::image_tiles({exposure, 0, 1, 0}, kImageRegion, 12, pattern(0)));
   const twins::TruthSnapshot truth{exposure, {}};
   keeper.on_image({exposure, {}, nullptr, &truth}, pictures_);
   ASSERT_EQ(pictures_.size(), 1U);

@@ -9,10 +9,10 @@ namespace {
 
 using fsw::GpsTime;
 
-constexpr GpsTime kStart{1'000'000'000'000'000'000};
+constexpr GpsTime kFirstEpoch{1'000'000'000'000'000'000};
 
 IdealNavigation::Settings settings() {
-  return {"servicer", 1, 3, "target", kStart, fsw::duration_of_seconds(60)};
+  return {"servicer", 1, 3, "target", kFirstEpoch, fsw::duration_of_seconds(60)};
 }
 
 TruthSnapshot truth_at(GpsTime time) {
@@ -25,16 +25,16 @@ TruthSnapshot truth_at(GpsTime time) {
 
 TEST(IdealNavigation, SendsTheTrueStatesOfTheNamedSpacecraft) {
   IdealNavigation sensor(settings());
-  const Measurement measurement = sensor.measure(truth_at(kStart));
+  const Measurement measurement = sensor.measure(truth_at(kFirstEpoch));
   ASSERT_EQ(measurement.status, MeasurementStatus::kReady);
-  EXPECT_EQ(measurement.available, kStart);
+  EXPECT_EQ(measurement.available, kFirstEpoch);
   EXPECT_FALSE(measurement.bypasses_link);
   ASSERT_EQ(measurement.packets.size(), 1U);
 
   const auto view = fsw::packets::parse_packet(measurement.packets[0]);
   ASSERT_TRUE(view.ok());
   EXPECT_EQ(view.value().header.apid, fsw::packets::Apid::kIdealNavigation);
-  EXPECT_EQ(view.value().header.time, kStart);
+  EXPECT_EQ(view.value().header.time, kFirstEpoch);
   EXPECT_EQ(view.value().header.spacecraft, 1);
   EXPECT_EQ(view.value().header.unit, 3);
   const auto message = fsw::packets::decode<vbar::ideal_navigation>(view.value());
@@ -48,7 +48,7 @@ TEST(IdealNavigation, SendsTheTrueStatesOfTheNamedSpacecraft) {
 TEST(IdealNavigation, NumbersItsPacketsModulo14Bits) {
   IdealNavigation sensor(settings());
   for (int k = 0; k <= 0x4000; ++k) {
-    const Measurement measurement = sensor.measure(truth_at(kStart + fsw::duration_of_seconds(60 * k)));
+    const Measurement measurement = sensor.measure(truth_at(kFirstEpoch + fsw::duration_of_seconds(60 * k)));
     const auto view = fsw::packets::parse_packet(measurement.packets.at(0));
     ASSERT_TRUE(view.ok());
     ASSERT_EQ(view.value().header.sequence_count, k & 0x3FFF);
@@ -57,7 +57,7 @@ TEST(IdealNavigation, NumbersItsPacketsModulo14Bits) {
 
 TEST(IdealNavigation, MeasuresEveryPeriodFromItsStart) {
   const IdealNavigation sensor(settings());
-  const auto at = [](std::int64_t ns) { return kStart + fsw::Duration{ns}; };
+  const auto at = [](std::int64_t ns) { return kFirstEpoch + fsw::Duration{ns}; };
   constexpr std::int64_t kPeriod = 60'000'000'000;
   EXPECT_EQ(sensor.next_epoch(at(-5)), at(0));
   EXPECT_EQ(sensor.next_epoch(at(0)), at(0)) << "at or after";
@@ -68,21 +68,21 @@ TEST(IdealNavigation, MeasuresEveryPeriodFromItsStart) {
 
 TEST(IdealNavigation, FailsWithAReason) {
   IdealNavigation sensor(settings());
-  TruthSnapshot alone = truth_at(kStart);
+  TruthSnapshot alone = truth_at(kFirstEpoch);
   alone.spacecraft.erase(alone.spacecraft.begin());
   Measurement measurement = sensor.measure(alone);
   EXPECT_EQ(measurement.status, MeasurementStatus::kFailed);
   EXPECT_EQ(measurement.reason, "ideal navigation: no spacecraft \"target\"");
   EXPECT_TRUE(measurement.packets.empty());
 
-  TruthSnapshot broken = truth_at(kStart);
+  TruthSnapshot broken = truth_at(kFirstEpoch);
   broken.spacecraft[0].orbit.position_eci(1) = std::numeric_limits<double>::quiet_NaN();
   measurement = sensor.measure(broken);
   EXPECT_EQ(measurement.status, MeasurementStatus::kFailed);
   EXPECT_TRUE(measurement.packets.empty()) << "no NaN reaches a packet";
 
   // The failures have left no gap in the sequence.
-  const Measurement good = sensor.measure(truth_at(kStart));
+  const Measurement good = sensor.measure(truth_at(kFirstEpoch));
   EXPECT_EQ(fsw::packets::parse_packet(good.packets.at(0)).value().header.sequence_count, 0);
 }
 

@@ -55,17 +55,17 @@ Statistics fly(int seeds, int epochs, double true_mm, double configured_mm) {
   return all;
 }
 
-constexpr int kSeeds = vbar::test::share_under_sanitizers(40);
+constexpr int kWanderSeeds = vbar::test::share_under_sanitizers(40);
 // 95 % of chi-square(6 x 40) / 40.
-const double kNeesBand = 1.96 * std::sqrt(12.0 / kSeeds);
+const double kNeesBand = 1.96 * std::sqrt(12.0 / kWanderSeeds);
 
 TEST(PhaseWanderAiding, IsConsistentWhereItIsConfigured) {
   for (const double wander_mm : {0.5, 1.0, 2.0}) {
-    const Statistics all = fly(kSeeds, 40, wander_mm, wander_mm);
+    const Statistics all = fly(kWanderSeeds, 40, wander_mm, wander_mm);
     EXPECT_NEAR(all.nees, 6.0, kNeesBand) << wander_mm;
-    EXPECT_NEAR(all.nis, 1.0, 0.05 * std::sqrt(40.0 / kSeeds)) << wander_mm;  // as in IsConsistentWithItsErrors
+    EXPECT_NEAR(all.nis, 1.0, 0.05 * std::sqrt(40.0 / kWanderSeeds)) << wander_mm;  // as in IsConsistentWithItsErrors
     EXPECT_EQ(all.with_wrong_integers, 0) << wander_mm;
-    EXPECT_EQ(all.fixed, kSeeds) << wander_mm;
+    EXPECT_EQ(all.fixed, kWanderSeeds) << wander_mm;
     EXPECT_EQ(all.releases, 0) << wander_mm;
   }
 }
@@ -73,10 +73,10 @@ TEST(PhaseWanderAiding, IsConsistentWhereItIsConfigured) {
 // The same wander taken for white noise: the integers contradict what the covariance allows.
 TEST(PhaseWanderAiding, IsNotConsistentWhereItIsNot) {
   if (vbar::test::kAddressSanitizer) GTEST_SKIP() << "statistics of 40 seeds";
-  const Statistics all = fly(kSeeds, 40, 2.0, 0.0);
+  const Statistics all = fly(kWanderSeeds, 40, 2.0, 0.0);
   EXPECT_GT(all.nees, 6.0 + 4.0 * kNeesBand);
   EXPECT_GT(all.nis, 1.5);
-  EXPECT_LT(all.fixed, kSeeds);
+  EXPECT_LT(all.fixed, kWanderSeeds);
 }
 
 TEST(PhaseWanderAiding, AMismatchHoldsNoWrongInteger) {
@@ -84,9 +84,9 @@ TEST(PhaseWanderAiding, AMismatchHoldsNoWrongInteger) {
     double true_mm, configured_mm;
   };
   for (const Mismatch mismatch : {Mismatch{1.0, 0.5}, Mismatch{0.5, 1.0}, Mismatch{0.0, 1.0}}) {
-    const Statistics all = fly(kSeeds, 40, mismatch.true_mm, mismatch.configured_mm);
+    const Statistics all = fly(kWanderSeeds, 40, mismatch.true_mm, mismatch.configured_mm);
     EXPECT_EQ(all.with_wrong_integers, 0) << mismatch.true_mm << " mm, configured " << mismatch.configured_mm;
-    EXPECT_EQ(all.fixed, kSeeds) << mismatch.true_mm << " mm, configured " << mismatch.configured_mm;
+    EXPECT_EQ(all.fixed, kWanderSeeds) << mismatch.true_mm << " mm, configured " << mismatch.configured_mm;
   }
 }
 

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "camera_client.h"
+#include "tests/unit/hil_drivers/gige/camera/camera_client.h"
 
 namespace vbar::gige {
 namespace {

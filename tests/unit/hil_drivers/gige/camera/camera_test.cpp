@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "camera_client.h"
+#include "tests/unit/hil_drivers/gige/camera/camera_client.h"
 
 namespace vbar::gige {
 namespace {

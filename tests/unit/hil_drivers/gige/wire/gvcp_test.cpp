@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "hex.h"
+#include "tests/unit/hil_drivers/gige/wire/hex.h"
 
 namespace vbar::gige::wire {
 namespace {

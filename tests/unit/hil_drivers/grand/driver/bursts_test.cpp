@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "receiver_logs.h"
+#include "tests/unit/hil_drivers/grand/driver/receiver_logs.h"
 
 namespace vbar::grand {
 namespace {

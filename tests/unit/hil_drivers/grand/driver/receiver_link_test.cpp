@@ -8,8 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "../receiver_port/fake_receiver.h"
-#include "receiver_logs.h"
+#include "tests/unit/hil_drivers/grand/driver/receiver_logs.h"
+#include "tests/unit/hil_drivers/grand/receiver_port/fake_receiver.h"
 
 namespace vbar::grand {
 namespace {

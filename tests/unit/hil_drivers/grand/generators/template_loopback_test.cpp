@@ -42,7 +42,7 @@ bench::ControlSettings settings_of(const std::string& text) {
           .template_format = wire::read_template_format(mission::TableReader(table, "t.toml"))};
 }
 
-void fly(Generator& generator, int count) {
+void send_samples(Generator& generator, int count) {
   for (int n = 1; n <= count; ++n) {
     for (const std::size_t vehicle : {0U, 1U}) {
       generator.send(vehicle, sample_at(tenths(n), static_cast<double>(vehicle)));
@@ -58,7 +58,7 @@ TEST(TemplateLoopback, FliesBinaryAndTextDatagrams) {
     const auto generator = loopback.generator("template", text);
     prepare(*generator);
     EXPECT_EQ(generator->start(), std::nullopt);
-    fly(*generator, 10);
+    send_samples(*generator, 10);
     EXPECT_EQ(generator->state(0).text, "at 1.000 s");
     generator->stop();
     loopback.in_server([&](FakeEngine& engine, bench::ControlServers&) {

@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "fake_edges.h"
 #include "tests/support/figures.h"
+#include "tests/unit/hil_drivers/grand/pps/fake_edges.h"
 
 namespace vbar::grand {
 namespace {

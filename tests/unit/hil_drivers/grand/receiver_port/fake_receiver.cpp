@@ -1,4 +1,4 @@
-#include "fake_receiver.h"
+#include "tests/unit/hil_drivers/grand/receiver_port/fake_receiver.h"
 
 #include <array>
 #include <filesystem>

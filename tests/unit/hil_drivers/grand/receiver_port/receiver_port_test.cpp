@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "fake_receiver.h"
+#include "tests/unit/hil_drivers/grand/receiver_port/fake_receiver.h"
 
 namespace vbar::grand {
 namespace {

@@ -50,7 +50,7 @@ std::vector<Dot> random_dots(BenchModel& bench, int count, double noise_px) {
 }
 
 /// On 32 x 20 dots of 0.01 px noise; held out 27 x 17 dots of the same noise, as in the table of the design brief.
-HeldOutResiduals calibrated(const BenchModelSettings& settings, GeometryFit* result = nullptr) {
+HeldOutResiduals fitted_geometry(const BenchModelSettings& settings, GeometryFit* result = nullptr) {
   BenchModel bench(settings);
   const auto dots = grid(bench, 32, 20, 0.01), held_out = random_dots(bench, 459, 0.01);
   const GeometryFit fit = fit_geometry(dots, DisplayMapParameters{});
@@ -68,7 +68,7 @@ HeldOutResiduals calibrated(const BenchModelSettings& settings, GeometryFit* res
 TEST(GeometryFit, SmoothFieldsAreFittedToTheNoiseOfTheDots) {
   for (const double field_arcsec : {6.0, 15.0, 18.0})
     for (const std::uint32_t seed : {1U, 2U}) {
-      const HeldOutResiduals held_out = calibrated({.field_rms_arcsec = field_arcsec, .seed = seed});
+      const HeldOutResiduals held_out = fitted_geometry({.field_rms_arcsec = field_arcsec, .seed = seed});
       // The noise of the held-out dots alone is 0.01 px of 34.5 arcsec: a mean angle of 0.43 arcsec.
       EXPECT_LE(held_out.region.mean_arcsec, 0.8);
       EXPECT_LE(held_out.detector.mean_arcsec, 0.8);
@@ -80,12 +80,12 @@ TEST(GeometryFit, SmoothFieldsAreFittedToTheNoiseOfTheDots) {
 }
 
 TEST(GeometryFit, RougherFieldStaysWithinItsLimitInTheRegion) {
-  const HeldOutResiduals held_out = calibrated({.field_rms_arcsec = 9.0, .wave_number_sigma = 1.0 / 180.0});
+  const HeldOutResiduals held_out = fitted_geometry({.field_rms_arcsec = 9.0, .wave_number_sigma = 1.0 / 180.0});
   EXPECT_LE(held_out.region.mean_arcsec, 2.5);  // required
 }
 
 TEST(GeometryFit, FieldThatTheDotsCannotResolveMissesTheGoal) {
-  EXPECT_FALSE(calibrated({.field_rms_arcsec = 6.0, .wave_number_sigma = 1.0 / 100.0}).goal_reached);
+  EXPECT_FALSE(fitted_geometry({.field_rms_arcsec = 6.0, .wave_number_sigma = 1.0 / 100.0}).goal_reached);
 }
 
 TEST(GeometryFit, WrongDotsHaveNoInfluence) {

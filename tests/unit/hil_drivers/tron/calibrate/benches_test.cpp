@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "calibrated_bench.h"
+#include "tests/unit/hil_drivers/tron/calibrate/calibrated_bench.h"
 
 namespace vbar::tron::calibrate {
 namespace {

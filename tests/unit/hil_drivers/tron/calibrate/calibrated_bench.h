@@ -8,8 +8,8 @@
 
 #include "hil_drivers/tron/calibrate/poses/pose_choice.h"
 #include "hil_drivers/tron/calibrate/stages/fit_bench.h"
-#include "simulated_bench.h"
 #include "tests/support/paths.h"
+#include "tests/unit/hil_drivers/tron/calibrate/simulated_bench.h"
 
 namespace vbar::tron::calibrate {
 

@@ -1,4 +1,4 @@
-#include "simulated_bench.h"
+#include "tests/unit/hil_drivers/tron/calibrate/simulated_bench.h"
 
 #include <cmath>
 #include <numbers>

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "host_sim/truth/forces/force.h"
+#include "tests/unit/host_sim/truth/truth_fixture.h"
 
 namespace vbar::truth::test {
 
-inline constexpr double kGm = 3.986004415e14;  // GGM05S
 inline constexpr double kTwoPi = 2.0 * 3.14159265358979323846;
 
 /// In the plane through the node on the x axis with the given inclination, rad; at the node at time 0.

@@ -24,7 +24,7 @@ using fsw::Vector3;
 constexpr double kArcsecond = kDegree / 3600.0;
 
 /// A motion in closed form that is no orbit: a circle with a term that tilts and stretches it.
-OrbitalMotion own(double t) {
+OrbitalMotion own_at(double t) {
   const double n = 1.06e-3, k = 2.7e-3, u = n * t + 0.3;
   const Vector3 a(7.0e6, 0.0, 0.0), b(0.0, 1.0e6, 6.9e6), c(3.0e4, -2.0e4, 5.0e4);
   OrbitalMotion motion;
@@ -35,7 +35,7 @@ OrbitalMotion own(double t) {
 }
 
 Vector3 in_rtn(double t, const Vector3& v_eci) {
-  return fsw::orbit::R_rtn_eci({own(t).position_eci, own(t).velocity_eci}) * v_eci;
+  return fsw::orbit::R_rtn_eci({own_at(t).position_eci, own_at(t).velocity_eci}) * v_eci;
 }
 
 /// Large and quick enough that terms of second order count: some arc minutes within a minute.
@@ -49,7 +49,7 @@ ControlError some_error() {
 }
 
 TEST(CommandedAttitude, FollowsTheLineInRtnWithTheSecondAxisUp) {
-  CommandedAttitude attitude({}, {}, own);
+  CommandedAttitude attitude({}, {}, own_at);
   const Vector3 boresight = Vector3(0.05, -1.0, 0.02).normalized(), rate(1e-4, 0.0, -2e-4);
   ASSERT_TRUE(attitude.take({100.0, boresight, rate}));
   for (const double t : {0.0, 99.9, 100.0, 130.0, 700.0, 800.0, 5000.0}) {
@@ -65,7 +65,8 @@ TEST(CommandedAttitude, FollowsTheLineInRtnWithTheSecondAxisUp) {
 }
 
 TEST(CommandedAttitude, RateIsTheDerivativeOfTheAttitude) {
-  CommandedAttitude attitude({.boresight_body = {0.1, -0.3, 2.0}, .second_body = {0.2, -1.0, 0.4}}, some_error(), own);
+  CommandedAttitude attitude({.boresight_body = {0.1, -0.3, 2.0}, .second_body = {0.2, -1.0, 0.4}}, some_error(),
+                             own_at);
   ASSERT_TRUE(attitude.take({0.0, Vector3(0.1, -0.9, 0.3).normalized(), {2e-4, 1e-4, -3e-4}}));
   accuracy::Largest largest;
   for (double t = 5.0; t < 2000.0; t += 33.7) {
@@ -87,14 +88,14 @@ TEST(CommandedAttitude, RateIsTheDerivativeOfTheAttitude) {
 TEST(CommandedAttitude, ErrorTurnsTheBodyAboutItsOwnAxes) {
   ControlError error{};
   error[2][0] = {0.001, 0.0, 3.14159265358979323846 / 2.0};  // a constant milliradian about the boresight
-  const CommandedAttitude with({}, error, own), without({}, {}, own);
+  const CommandedAttitude with({}, error, own_at), without({}, {}, own_at);
   const Quaterniond turn = with.state_at(50.0).q_body_eci * without.state_at(50.0).q_body_eci.conjugate();
   // Body axes that have turned by +angle about z see what is still turned by -angle.
   EXPECT_LT((turn * Vector3::UnitX() - Vector3(std::cos(0.001), -std::sin(0.001), 0.0)).norm(), 1e-14);
 }
 
 TEST(CommandedAttitude, LaterCommandsReplaceThoseThatHaveNotBegun) {
-  CommandedAttitude attitude({}, {}, own);
+  CommandedAttitude attitude({}, {}, own_at);
   const auto boresight = [&](double t) {
     return in_rtn(t, attitude.state_at(t).q_body_eci.conjugate() * Vector3::UnitZ());
   };
@@ -119,15 +120,15 @@ TEST(CommandedAttitude, RefusesWhatLeavesTheTurnOpen) {
   EXPECT_TRUE(leaves_zenith_clear({1.0, -0.1, 0.0}, {0.0, 1e-4, 0.0})) << "would after 1000 s, when the line has ended";
   EXPECT_FALSE(leaves_zenith_clear({0.2, -0.1, 0.0}, {2e-3, 1e-3 / 6.0, 0.0})) << "ends there";
 
-  CommandedAttitude attitude({}, {}, own);
+  CommandedAttitude attitude({}, {}, own_at);
   ASSERT_TRUE(attitude.take({100.0, behind, still}));
   const Quaterniond before = attitude.state_at(200.0).q_body_eci;
   EXPECT_FALSE(attitude.take({100.0, {1.0, 0.0, 0.0}, still}));
   EXPECT_FALSE(attitude.take({kNaN, behind, still}));
   EXPECT_EQ(attitude.state_at(200.0).q_body_eci.coeffs(), before.coeffs());
 
-  EXPECT_THROW(CommandedAttitude({.second_body = Vector3::UnitZ()}, {}, own), std::invalid_argument);
-  EXPECT_THROW(CommandedAttitude({.initial_boresight_rtn = Vector3::UnitX()}, {}, own), std::invalid_argument);
+  EXPECT_THROW(CommandedAttitude({.second_body = Vector3::UnitZ()}, {}, own_at), std::invalid_argument);
+  EXPECT_THROW(CommandedAttitude({.initial_boresight_rtn = Vector3::UnitX()}, {}, own_at), std::invalid_argument);
   EXPECT_THROW(CommandedAttitude({}, {}, {}), std::invalid_argument);
 }
 

@@ -23,14 +23,14 @@ namespace camera = vbar::twins::camera;
 
 const Vector2 kMiddle(959.5, 599.5);
 
-camera::SceneRenderer& renderer() {
+camera::SceneRenderer& sky_renderer() {
   static camera::SceneRenderer made(camera::CameraSettings{}, vbar::test::camera_data());
   return made;
 }
 
 camera::PhotonImage image_of(const camera::Exposure& exposure) {
   camera::PhotonImage image;
-  renderer().render(exposure, image);
+  sky_renderer().render(exposure, image);
   return image;
 }
 

@@ -12,14 +12,14 @@
 namespace vbar::twins::gnss {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kRadPerDegree = std::numbers::pi / 180.0;
 constexpr KlobucharCoefficients kExample{{3.82e-8, 1.49e-8, -1.79e-7, 0.0}, {1.43e5, 0.0, -3.28e5, 1.13e5}};
 
 // The worked example that goes with many receivers' manuals (Klobuchar's own coefficients of a winter day): latitude 40
 // deg, longitude 260 deg east, elevation 20, azimuth 210 deg, 20:45 UT: 23.784 m. Printed to a millimetre.
 TEST(Klobuchar, WorkedExample) {
-  const double delay_m =
-      klobuchar_delay_m(kExample, 40.0 * kDegree, 260.0 * kDegree, 20.0 * kDegree, 210.0 * kDegree, 593100.0);
+  const double delay_m = klobuchar_delay_m(kExample, 40.0 * kRadPerDegree, 260.0 * kRadPerDegree, 20.0 * kRadPerDegree,
+                                           210.0 * kRadPerDegree, 593100.0);
   accuracy::expect_below("Klobuchar delay on the ground", "worked example, 23.784 m", std::abs(delay_m - 23.784), 5e-4,
                          "m");
 }
@@ -71,7 +71,7 @@ TEST(Klobuchar, VerticalDelayIsContinuous) {
 TEST(Klobuchar, ShellAgreesWithBroadcastObliquityOnTheGround) {
   const fsw::Vector3 ground(6371e3, 0.0, 0.0);
   for (const double elevation_deg : {30.0, 50.0, 70.0, 90.0}) {
-    const double elevation = elevation_deg * kDegree;
+    const double elevation = elevation_deg * kRadPerDegree;
     const fsw::Vector3 north(std::sin(elevation), 0.0, std::cos(elevation));
     const double shell_m = klobuchar_delay_in_orbit_m(kExample, ground, north, 50400.0);
     const double broadcast_m = klobuchar_delay_m(kExample, 0.0, 0.0, elevation, 0.0, 50400.0);

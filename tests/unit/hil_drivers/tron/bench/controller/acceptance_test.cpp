@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "one_robot.h"
+#include "tests/unit/hil_drivers/tron/bench/controller/one_robot.h"
 
 namespace vbar::tron::bench {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "hil_drivers/tron/eki/client/client.h"
 #include "hil_drivers/tron/rsi/client/client.h"
-#include "one_robot.h"
+#include "tests/unit/hil_drivers/tron/bench/controller/one_robot.h"
 
 namespace vbar::tron::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "one_robot.h"
+#include "tests/unit/hil_drivers/tron/bench/controller/one_robot.h"
 
 namespace vbar::tron::bench {
 namespace {
