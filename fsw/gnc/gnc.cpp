@@ -1,4 +1,5 @@
 #include "fsw/gnc/gnc.h"
+#include "fsw/gnc/telecommand_checks.h"
 
 namespace vbar::fsw::gnc {
 
@@ -42,7 +43,7 @@ void Gnc::begin_step(GpsTime now) {
 }
 
 void Gnc::manage() {
-  telecommands_.update(now_, inbox_);
+  telecommands_.update(now_, inbox_, telecommand_rules());
   management_.update(now_, telecommands_);
   if (telecommands_.is_new<fault_command>()) {
     faults_.clear(now_, telecommands_.in_force<fault_command>()->clear);

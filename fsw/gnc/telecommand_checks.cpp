@@ -4,7 +4,14 @@
 
 #include "fsw/gnc/inbox.h"
 #include "fsw/gnc/message_fields.h"
+#include "fsw/gnc/trunk_configuration.h"
 #include "fsw/math/math.h"
+#include "fsw/sources/bearings/bearing_configuration.h"
+#include "fsw/sources/calibrated_camera.h"
+#include "fsw/sources/carrier_pair/carrier_settings.h"
+#include "fsw/sources/image_use.h"
+#include "fsw/sources/keypoints/keypoint_settings.h"
+#include "fsw/sources/source_list.h"
 
 namespace vbar::fsw::gnc {
 namespace {
@@ -67,6 +74,46 @@ bool is_valid(const safety_configuration& c) {
 
 bool is_valid(const fault_command& /*command*/) {
   return true;
+}
+
+namespace {
+
+using sources::is_valid;
+
+/// Tests whether an image feeds one measurement source: of a camera for bearings and keypoints the exposure decides
+/// which, and there are two.
+bool are_consistent(const Telecommands& telecommands) {
+  constexpr std::int32_t kBoth = sources::BearingSource::kUse | sources::KeypointSource::kUse;
+  const auto* navigation = telecommands.proposed_or_in_force<navigation_configuration>(0);
+  if (navigation == nullptr || (navigation->sources & kBoth) != kBoth) return true;
+  for (std::size_t unit = 0; unit < packets::kCameras; ++unit) {
+    const auto* bearings = telecommands.proposed_or_in_force<angles_only_configuration>(unit);
+    const auto* keypoints = telecommands.proposed_or_in_force<pose_configuration>(unit);
+    const bool feeds_two = bearings != nullptr && keypoints != nullptr;
+    if (feeds_two && !sources::two_exposures(*bearings, *keypoints).ok()) return false;
+  }
+  return true;
+}
+
+template <class Message>
+constexpr void set(TelecommandCheck<Message>& check) {
+  check.is_valid = [](const Message& message) { return is_valid(message); };
+}
+
+constexpr TelecommandRules kRules = [] {
+  TelecommandRules rules;
+  std::apply([](auto&... checks) { (set(checks), ...); }, rules.checks);
+  rules.are_consistent = &are_consistent;
+  rules.rejected_first = {packets::MessageTraits<pose_configuration>::kApid,
+                          packets::MessageTraits<angles_only_configuration>::kApid,
+                          packets::MessageTraits<navigation_configuration>::kApid};
+  return rules;
+}();
+
+}  // namespace
+
+const TelecommandRules& telecommand_rules() {
+  return kRules;
 }
 
 }  // namespace vbar::fsw::gnc

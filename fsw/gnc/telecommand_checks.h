@@ -1,7 +1,8 @@
 #pragma once
-// Whether the values of a telecommand are within their valid ranges, of each kind by itself. A new telecommand needs
-// its is_valid: the store does not compile without it.
+// The rules of all telecommands: whether the values of one are within their valid ranges, and whether several agree. A new
+// telecommand needs its is_valid: the rules do not compile without it.
 
+#include "fsw/gnc/telecommands.h"
 #include "fsw/packets/messages.h"
 
 namespace vbar::fsw::gnc {
@@ -14,5 +15,8 @@ namespace vbar::fsw::gnc {
 [[nodiscard]] bool is_valid(const mode_command& command);
 [[nodiscard]] bool is_valid(const safety_configuration& configuration);
 [[nodiscard]] bool is_valid(const fault_command& command);
+
+/// Returns the rules that the flight software passes to its store of telecommands.
+[[nodiscard]] const TelecommandRules& telecommand_rules();
 
 }  // namespace vbar::fsw::gnc

@@ -1,17 +1,6 @@
 #include "fsw/gnc/telecommands.h"
 
-#include "fsw/gnc/telecommand_checks.h"
-#include "fsw/gnc/trunk_configuration.h"
-#include "fsw/sources/bearings/bearing_configuration.h"
-#include "fsw/sources/calibrated_camera.h"
-#include "fsw/sources/carrier_pair/carrier_settings.h"
-#include "fsw/sources/image_use.h"
-#include "fsw/sources/keypoints/keypoint_settings.h"
-#include "fsw/sources/source_list.h"
-
 namespace vbar::fsw::gnc {
-using sources::is_valid;
-
 namespace {
 
 // The last of the list stands for all: the list of vbar.lcm is that of the code.
@@ -26,11 +15,13 @@ bool is_older(const FilingTag& tag, const FilingTag& than) {
 
 }  // namespace
 
-void Telecommands::update(GpsTime now, Inbox& inbox) {
+void Telecommands::update(GpsTime now, Inbox& inbox, const TelecommandRules& rules) {
   acknowledgment_count_ = 0;
   has_changed_ = false;
-  packets::for_each_telecommand([&]<class Message>() { propose_all<Message>(now, inbox); });
-  refuse_contradictions();
+  packets::for_each_telecommand([&]<class Message>() {
+    propose_all(now, inbox, std::get<TelecommandCheck<Message>>(rules.checks));
+  });
+  refuse_contradictions(rules);
   packets::for_each_telecommand([&]<class Message>() {
     for (Slot<Message>& slot : std::get<Slots<Message>>(slots_).units) {
       slot.is_new = slot.proposed.has_value() || (is_renewed_ && slot.value.has_value());
@@ -56,19 +47,20 @@ void Telecommands::renew(GpsTime now) {
 }
 
 template <class Message>
-void Telecommands::propose_all(GpsTime now, const Inbox& inbox) {
+void Telecommands::propose_all(GpsTime now, const Inbox& inbox, const TelecommandCheck<Message>& check) {
   const auto& queue = inbox.queue<Message>();
   for (std::size_t k = 0; k < queue.size(); ++k) {
     // Member by member: a copied aggregate would bring the padding of the stack into the state.
     Acknowledgment& acknowledgment = acknowledgments_[acknowledgment_count_++];
     acknowledgment.apid = packets::MessageTraits<Message>::kApid;
     acknowledgment.tag = queue[k].tag;
-    acknowledgment.status = propose(now, queue[k].tag, queue[k].value);
+    acknowledgment.status = propose(now, queue[k].tag, queue[k].value, check);
   }
 }
 
 template <class Message>
-TelecommandStatus Telecommands::propose(GpsTime now, const FilingTag& tag, const Message& message) {
+TelecommandStatus Telecommands::propose(GpsTime now, const FilingTag& tag, const Message& message,
+                                        const TelecommandCheck<Message>& check) {
   auto& units = std::get<Slots<Message>>(slots_).units;
   if (tag.time > now) return TelecommandStatus::kFuture;
   if (tag.unit >= units.size()) return TelecommandStatus::kUnknownUnit;
@@ -76,37 +68,20 @@ TelecommandStatus Telecommands::propose(GpsTime now, const FilingTag& tag, const
   const bool is_superseded =
       (slot.value && is_older(tag, slot.tag)) || (slot.proposed && is_older(tag, slot.proposed_tag));
   if (is_superseded) return TelecommandStatus::kSuperseded;
-  if (!is_valid(message)) return TelecommandStatus::kOutOfRange;
+  if (!check.is_valid(message)) return TelecommandStatus::kOutOfRange;
   slot.proposed = message;
   slot.proposed_tag = tag;
   return TelecommandStatus::kAccepted;
 }
 
-template <class Message>
-const Message* Telecommands::proposed_or_in_force(std::size_t unit) const {
-  const Slot<Message>& known = slot<Message>(unit);
-  return known.proposed ? &*known.proposed : in_force<Message>(unit);
-}
-
-/// An image feeds one source: of a camera for bearings and keypoints the exposure decides which, and there are two.
-bool Telecommands::are_consistent() const {
-  constexpr std::int32_t kBoth = sources::BearingSource::kUse | sources::KeypointSource::kUse;
-  const auto* navigation = proposed_or_in_force<navigation_configuration>(0);
-  if (navigation == nullptr || (navigation->sources & kBoth) != kBoth) return true;
-  for (std::size_t unit = 0; unit < packets::kCameras; ++unit) {
-    const auto* bearings = proposed_or_in_force<angles_only_configuration>(unit);
-    const auto* keypoints = proposed_or_in_force<pose_configuration>(unit);
-    const bool feeds_two = bearings != nullptr && keypoints != nullptr;
-    if (feeds_two && !sources::two_exposures(*bearings, *keypoints).ok()) return false;
-  }
-  return true;
-}
-
 /// Those in force agree with each other, so that without the proposals nothing contradicts.
-void Telecommands::refuse_contradictions() {
-  if (!are_consistent()) refuse_proposals<pose_configuration>();
-  if (!are_consistent()) refuse_proposals<angles_only_configuration>();
-  if (!are_consistent()) refuse_proposals<navigation_configuration>();
+void Telecommands::refuse_contradictions(const TelecommandRules& rules) {
+  for (const packets::Apid apid : rules.rejected_first) {
+    if (rules.are_consistent(*this)) return;
+    packets::for_each_telecommand([&]<class Message>() {
+      if (packets::MessageTraits<Message>::kApid == apid) refuse_proposals<Message>();
+    });
+  }
 }
 
 template <class Message>

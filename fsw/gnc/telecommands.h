@@ -29,11 +29,27 @@ enum class TelecommandStatus : std::int8_t {
   kContradiction = 5,  ///< valid alone, but not with another telecommand in force
 };
 
+class Telecommands;
+
+/// Tests whether the values of a telecommand are within their valid ranges, by itself.
+template <class Message>
+struct TelecommandCheck {
+  bool (*is_valid)(const Message& message) = nullptr;
+};
+
+/// States what the users of telecommands accept. The rules are passed to the store, which depends on no user.
+struct TelecommandRules {
+  packets::TupleOfRoute<&packets::is_telecommand, TelecommandCheck>::Type checks;  ///< one for each kind
+  /// Tests whether the telecommands proposed or in force agree with each other.
+  bool (*are_consistent)(const Telecommands& telecommands) = nullptr;
+  std::array<packets::Apid, 3> rejected_first{};  ///< kinds that can contradict each other, in this order
+};
+
 class Telecommands {
  public:
   /// Checks and stores the telecommands of the step; the inbox counts those refused. Of two that contradict each other
   /// and arrive for the same step, the one listed later in message_list.h is refused.
-  void update(GpsTime now, Inbox& inbox);
+  void update(GpsTime now, Inbox& inbox, const TelecommandRules& rules);
 
   /// After a restart at `now`: the next update treats those in force as new, so that their users derive their settings
   /// again. One whose time tag is later, of a clock that has been set back, has that of the restart from now on.
@@ -44,6 +60,12 @@ class Telecommands {
   [[nodiscard]] const Message* in_force(std::size_t unit = 0) const {
     const auto& value = slot<Message>(unit).value;
     return value ? &*value : nullptr;
+  }
+  /// The telecommand of this step that is valid by itself, or the one in force; nullptr without either. For the rules.
+  template <class Message>
+  [[nodiscard]] const Message* proposed_or_in_force(std::size_t unit) const {
+    const auto& known = slot<Message>(unit);
+    return known.proposed ? &*known.proposed : in_force<Message>(unit);
   }
   /// Time tag of the telecommand in force; 0 without one.
   template <class Message>
@@ -92,13 +114,11 @@ class Telecommands {
     return std::get<Slots<Message>>(slots_).units[unit];
   }
   template <class Message>
-  void propose_all(GpsTime now, const Inbox& inbox);
+  void propose_all(GpsTime now, const Inbox& inbox, const TelecommandCheck<Message>& check);
   template <class Message>
-  TelecommandStatus propose(GpsTime now, const FilingTag& tag, const Message& message);
-  template <class Message>
-  [[nodiscard]] const Message* proposed_or_in_force(std::size_t unit) const;
-  [[nodiscard]] bool are_consistent() const;
-  void refuse_contradictions();
+  TelecommandStatus propose(GpsTime now, const FilingTag& tag, const Message& message,
+                            const TelecommandCheck<Message>& check);
+  void refuse_contradictions(const TelecommandRules& rules);
   template <class Message>
   void refuse_proposals();
   void count_refusals(Inbox& inbox) const;

@@ -88,7 +88,7 @@ void EmulatedPair::fly(int epochs) {
     under_way_.erase(under_way_.begin(), first_later);
     if (tamper_) tamper_(static_cast<int>(next_), packets);
     for (const twins::Packet& packet : packets) static_cast<void>(inbox_.receive(packet));
-    telecommands_.update(truth.time, inbox_);
+    telecommands_.update(truth.time, inbox_, fsw::gnc::telecommand_rules());
     navigation_->update(truth.time, telecommands_, inbox_, *measurements_);
     inbox_.clear(GpsTime{});
   }

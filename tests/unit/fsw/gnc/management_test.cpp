@@ -1,6 +1,7 @@
 // Telecommands in, modes and waypoints out; nonsense changes nothing and is counted.
 
 #include "fsw/gnc/management.h"
+#include "fsw/gnc/telecommand_checks.h"
 
 #include <limits>
 
@@ -37,7 +38,7 @@ class ManagementTest : public ::testing::Test {
     ASSERT_EQ(inbox_.receive(packet_of({ns}, message)), Status::kOk);
   }
   void step(std::int64_t ns) {
-    telecommands_.update({ns}, inbox_);
+    telecommands_.update({ns}, inbox_, telecommand_rules());
     management_.update({ns}, telecommands_);
     inbox_.clear(GpsTime{});
   }

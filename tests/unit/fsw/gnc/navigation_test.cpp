@@ -1,6 +1,7 @@
 // Measurements and own maneuvers are folded in at their own times; without measurements the state coasts and says so.
 
 #include "fsw/gnc/navigation.h"
+#include "fsw/gnc/telecommand_checks.h"
 
 #include "fsw/navigation/propagation.h"
 #include "fsw/orbit/propagate.h"
@@ -36,7 +37,7 @@ ideal_navigation measurement_of(const orbit::CartesianState& servicer, double se
 class NavigationTest : public ::testing::Test {
  protected:
   void update(std::int64_t seconds) {
-    telecommands_.update({seconds * kSecond}, inbox_);
+    telecommands_.update({seconds * kSecond}, inbox_, telecommand_rules());
     navigation_.update({seconds * kSecond}, telecommands_, inbox_, measurements_);
     inbox_.clear(GpsTime{});
   }

@@ -2,6 +2,7 @@
 // refused one changes nothing.
 
 #include "fsw/gnc/telecommands.h"
+#include "fsw/gnc/telecommand_checks.h"
 
 #include "tests/unit/fsw/gnc/configurations.h"
 #include "tests/unit/fsw/gnc/small_world.h"
@@ -23,7 +24,7 @@ class TelecommandsTest : public ::testing::Test {
   /// The acknowledgments of a step at `ns`.
   std::vector<telemetry_telecommand> step(std::int64_t ns) {
     sent_.clear();
-    telecommands_.update({ns}, inbox_);
+    telecommands_.update({ns}, inbox_, telecommand_rules());
     telecommands_.report(outbox_, step_++, {ns});
     inbox_.clear(GpsTime{});
     return sent_;
