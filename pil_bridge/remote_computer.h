@@ -21,11 +21,11 @@ struct RemoteParts {
   std::unique_ptr<FrameTransport> transport;
   BarrierTiming timing;
   std::uint8_t spacecraft = 0;
-  /// Of the emulator; without it the board's timer ticks cannot be converted to instructions.
+  /// Description of the emulator; without it the board's timer ticks cannot be converted to instructions.
   std::optional<int> icount_shift;
   std::uint64_t step_budget = 0;  ///< in instructions with `icount_shift`, else in cycles; 0: that of the board
-  std::optional<io::WiredReceiver> receiver = std::nullopt;  ///< that is wired to the flight computer
-  double line_bits_per_s = 0.0;  ///< of a serial line, 10 bits a byte; 0: as fast as it goes
+  std::optional<io::WiredReceiver> receiver = std::nullopt;  ///< receiver that is wired to the flight computer
+  double line_bits_per_s = 0.0;  ///< rate of a serial line, 10 bits a byte; 0: as fast as it goes
 };
 
 /// How much of an exchange the flight computer spent computing, s. `waited_s`: from the last packet handed to the line
@@ -46,7 +46,7 @@ class RemoteComputer final : public FlightComputer {
   [[nodiscard]] std::string description() const override { return parts_.name + ": " + board_name_; }
   void close() override;
 
-  /// Of the process that runs the flight computer, -1 if there is none. For tests that end it.
+  /// Returns the number of the process that runs the flight computer, -1 if there is none. For tests that end it.
   [[nodiscard]] int process_id() const { return parts_.process ? parts_.process->pid() : -1; }
 
  private:
@@ -74,7 +74,7 @@ class RemoteComputer final : public FlightComputer {
   std::string failure_;  ///< why this computer can no longer be used; empty while it can
   bool closed_ = false;
   LinkStatistics board_counters_;      ///< the board's counters, from its last step report
-  std::uint32_t packets_dropped_ = 0;  ///< likewise
+  std::uint32_t packets_dropped_ = 0;  ///< also from its last step report
 };
 
 }  // namespace vbar::pil

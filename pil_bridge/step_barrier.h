@@ -66,14 +66,15 @@ class StepBarrier {
   /// been reset since connect().
   std::vector<Packet> exchange(std::uint32_t step, std::span<const Packet> packets);
 
-  /// Of the last exchange: from the last packet handed to the line, or handed to it again, to the first packet of the
-  /// answer.
+  /// Returns the wait of the last exchange: from the last packet handed to the line, or handed to it again, to the
+  /// first packet of the answer.
   [[nodiscard]] Clock::duration waited() const { return first_answer_ - last_sent_; }
 
   /// The snapshot of the flight software between two steps; empty if it gives none. Throws LinkError.
   std::vector<std::uint8_t> read_snapshot();
 
-  /// Before the first step: gives the flight software a snapshot; the status of its restoration, 0 if it was accepted.
+  /// Gives the flight software a snapshot before the first step. Returns the status of its restoration, 0 if it was
+  /// accepted.
   /// Throws LinkError.
   std::int32_t write_snapshot(std::span<const std::uint8_t> snapshot);
 

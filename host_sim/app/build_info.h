@@ -6,7 +6,7 @@
 namespace vbar::app {
 
 extern const char* const
-    kBuildCommit;  ///< of the source tree, "+" behind it if files were changed; "unknown" outside git
+    kBuildCommit;  ///< commit of the source tree, "+" behind it if files were changed; "unknown" outside git
 
 /// "0.3.0"
 [[nodiscard]] std::string build_version();

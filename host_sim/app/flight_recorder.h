@@ -1,5 +1,5 @@
 #pragma once
-// Turns what happens in a run into the rows of its record: truth, what the flight software said, maneuvers, waypoints
+// Turns what happens in a run into the rows of its record: truth, telemetry, maneuvers, waypoints
 // met.
 
 #include <string>

@@ -20,7 +20,7 @@ namespace {
 struct Domain {
   mission::Solver solver;
   std::string_view name;         ///< in missions
-  std::string_view description;  ///< of the algorithm
+  std::string_view description;  ///< words for the algorithm
   double max_eccentricity;
 };
 

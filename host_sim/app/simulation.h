@@ -67,7 +67,7 @@ struct World {
   std::span<RunObserver* const> observers;
   std::function<void(fsw::Duration)> progress = {};  ///< gets the simulated span after each step; may be empty
   std::function<bool()> stop_requested = {};         ///< asked often; may be empty
-  /// Burns that nobody commanded and whose times, the present or later, have become known; asked at the start and after
+  /// Uncommanded burns whose times, the present or later, have become known; asked at the start and after
   /// each event. May be empty.
   std::function<std::vector<Timetable::Burn>()> more_burns = {};
 };
@@ -85,7 +85,7 @@ struct RunFacts {
   fsw::Duration simulated;
   // Wall-clock time, s; the shares are parts of `wall_s`.
   double wall_s = 0.0, truth_s = 0.0, flight_s = 0.0, link_s = 0.0, sources_s = 0.0;
-  std::string cost_unit = "none";  ///< of pil::StepReport::count
+  std::string cost_unit = "none";  ///< unit of pil::StepReport::count
   engine::DeadlineReport deadlines;
   std::vector<OfSource> sources;
 };

@@ -43,8 +43,8 @@ class CaseFlight {
   CaseFlight(const CaseFlight&) = delete;
   CaseFlight& operator=(const CaseFlight&) = delete;
 
-  /// The case's own fault, or none: a result. Killed: to be flown again. Trouble: of the computer or the campaign, not
-  /// of the case (a full disk, a program that does not start): nothing more can be flown here.
+  /// kResult: the case succeeded or failed by itself. kKilled: it is to be flown again. kTrouble: the computer or the
+  /// campaign failed, not the case (a full disk, a program that does not start); nothing more can be flown here.
   struct End {
     enum class Kind { kResult, kKilled, kTrouble };
     Kind kind = Kind::kResult;

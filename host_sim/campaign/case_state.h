@@ -16,7 +16,7 @@ struct CaseStatus {
   State state = State::kNotBegun;
   std::size_t attempts = 0;
   const Result* result = nullptr;  ///< null of a case without one
-  std::string last_end;            ///< of a killed one, if a worker saw it
+  std::string last_end;            ///< end of a killed flight, if a worker saw it
 };
 
 /// Numbers of cases.

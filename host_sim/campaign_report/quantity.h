@@ -22,8 +22,8 @@ struct Quantity {
   [[nodiscard]] double badness(double value) const;
 };
 
-/// Those with pass criteria; besides, as a campaign may have none, the errors at the last waypoint and delta-v. None
-/// before a case is complete.
+/// Returns the quantities with pass criteria and, as a campaign may have none, the errors at the last waypoint and
+/// delta-v; empty before a case is complete.
 [[nodiscard]] std::vector<Quantity> quantities(const Campaign& campaign);
 
 /// The values that there are.

@@ -18,7 +18,7 @@ class FaultSchedule final : public app::RunObserver {
   /// In the order of the file. Places do not change; `begin` of one does when its event happens.
   [[nodiscard]] const std::vector<mission::Fault>& faults() const { return faults_; }
 
-  /// A burn that was commanded or announced begins, before it is known what becomes of it.
+  /// A burn that was commanded or announced begins; its execution is not known yet.
   void on_ignition(fsw::GpsTime time);
 
   void on_truth(const twins::TruthSnapshot& truth) override;

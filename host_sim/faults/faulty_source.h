@@ -46,7 +46,7 @@ class FaultySource final : public twins::PacketSource {
 
   std::unique_ptr<twins::PacketSource> source_;
   std::shared_ptr<const FaultSchedule> schedule_;
-  std::vector<const mission::Fault*> faults_;  ///< of the schedule: those of this source
+  std::vector<const mission::Fault*> faults_;  ///< faults of the schedule that concern this source
   std::vector<bool> is_upset_;                 ///< by each of them already
   std::shared_ptr<LastImage> last_image_;
 };

@@ -16,7 +16,7 @@ struct FileRead {
   std::string sha256;
 };
 
-/// Of this process so far, each file once, in order of their paths.
+/// Returns the files that this process has read so far, each once, in order of their paths.
 [[nodiscard]] std::vector<FileRead> files_read();
 
 /// What this thread reads during its life is not recorded: of missions that are looked at, and not flown.

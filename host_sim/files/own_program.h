@@ -9,7 +9,7 @@
 
 namespace vbar::files {
 
-/// Of this program; empty if the system does not state it.
+/// Returns the path of this program; empty if the system does not state it.
 [[nodiscard]] std::filesystem::path own_program();
 
 /// For reading the bytes of this program, also after another build took its place.

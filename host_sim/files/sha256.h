@@ -21,7 +21,7 @@ class Sha256 {
   void add(std::span<const std::uint8_t> bytes);
   void add(std::string_view bytes);
 
-  /// Of all bytes so far, 64 lower-case hexadecimal digits; more bytes may follow.
+  /// Returns the hash of all bytes so far, 64 lower-case hexadecimal digits; more bytes may follow.
   [[nodiscard]] std::string hexadecimal() const;
 
  private:

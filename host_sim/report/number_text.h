@@ -19,7 +19,7 @@ namespace vbar::report {
 /// 12,345,678.
 [[nodiscard]] std::string grouped(std::uint64_t value);
 
-/// The same for the nearest whole number; a dash for one that is not finite or negative.
+/// Returns the nearest whole number; a dash for a number that is not finite, or negative.
 [[nodiscard]] std::string grouped_nearest(double value);
 
 /// "41 h 15 min", "2 h 15 min", "12.3 s".

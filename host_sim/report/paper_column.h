@@ -20,7 +20,7 @@ struct PaperColumn {
   std::optional<MeanAndDeviation> navigation_error_m, navigation_velocity_error_mps;
   double dv_mps = 0.0;
   int maneuvers = 0;
-  std::optional<MeanAndDeviation> attitude_error_deg = {};  ///< of the target
+  std::optional<MeanAndDeviation> attitude_error_deg = {};  ///< attitude error of the target
 };
 
 }  // namespace vbar::report

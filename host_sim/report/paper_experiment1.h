@@ -25,7 +25,7 @@ inline constexpr std::array<PaperWaypoint<Loops>, 7> kWaypoints{{
     {7, {0.0, -100.0, 0.0, 3.0, 0.0, 3.0}, {{3.89, 8.77}, {3.06, 4.47}}},
 }};
 
-/// Of the whole experiment.
+/// Figures of the whole experiment.
 struct Totals {
   double dv_mps;
   int maneuvers;

@@ -15,7 +15,7 @@ inline constexpr std::array<PaperWaypoint<Loops>, 2> kWaypoints{{
     {10, {0.0, -8.5, 1.0, 0.0, 1.0, 0.0}, {{0.0512, 0.1231}, {0.1035, 0.2450}}},
 }};
 
-/// Of the whole experiment.
+/// Figures of the whole experiment.
 struct Totals {
   MeanAndDeviation navigation_error_m, attitude_error_deg;
   double dv_mps;

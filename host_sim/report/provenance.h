@@ -21,7 +21,7 @@ struct Provenance {
   std::string vbar_version, commit, compiler, build_type;
   std::string host, started_utc, epoch_utc;
   std::vector<std::string> overrides;  ///< "path=value", as given
-  std::string mission_sha256;          ///< of mission.toml in the run folder
+  std::string mission_sha256;          ///< hash of mission.toml in the run folder
   std::string program_sha256;
   std::optional<FileDigest> flight_software;  ///< the library or image that flew; none: in the program, or on a board
   std::vector<FileDigest> testbed;            ///< program and scenario of an emulated bench

@@ -48,7 +48,7 @@ struct AttitudeRow {
   double time_s = 0.0;
   std::string spacecraft;
   Quadruple q_body_eci{1.0, 0.0, 0.0, 0.0};  ///< w, x, y, z: turns ECI components into body components
-  Triple rate_body_radps{};                  ///< of the body with respect to ECI, in body axes
+  Triple rate_body_radps{};                  ///< angular rate of the body with respect to ECI, in body axes
 };
 
 /// What the flight software said of itself at a step (estimate.csv).
@@ -73,10 +73,10 @@ struct GalleryImage {
   std::int32_t image = 0;
   std::string caption;
   int origin_x_px = 0, origin_y_px = 0, width_px = 0, height_px = 0;  ///< at the picture's upper left corner, 1:1
-  double target_radius_px = 0.0;                                      ///< of a circle about the target
+  double target_radius_px = 0.0;                                      ///< radius of a circle about the target
   int crop_left = 0, crop_side = 0;  ///< in the picture: where the crop of the pose network is; side 0: no crop
   std::vector<std::uint8_t> png;     ///< the file's bytes
-  /// Of an image of a testbed: the image that the digital twin makes of the same exposure (gallery/<image>_twin.png),
+  /// For an image of a testbed: the image that the digital twin makes of the same exposure (gallery/<image>_twin.png),
   /// the testbed's image less that one (gallery/<image>_difference.png), and how they differ; empty of other images.
   std::string difference = {};
   std::vector<std::uint8_t> twin_png = {}, difference_png = {};
@@ -113,8 +113,8 @@ struct WaypointRow {
 /// A message of telemetry as it came (<message>.csv).
 template <class Message>
 struct TelemetryRow {
-  double time_s = 0.0;       ///< of the packet, since the mission's epoch
-  double step_time_s = 0.0;  ///< of the step that it came with
+  double time_s = 0.0;       ///< time of the packet, since the mission's epoch
+  double step_time_s = 0.0;  ///< time of the step that it came with
   Message message{};
 };
 
@@ -137,14 +137,14 @@ struct NoteRow {
   std::string text;
 };
 
-/// A fault of the scenario, and what witnesses other than its cause have seen of it (faults.csv). Times since the
-/// mission's epoch.
+/// A fault of the scenario, and its effects as observers other than its cause have seen them (faults.csv). Times since
+/// the mission's epoch.
 struct FaultRow {
   std::string name, kind, unit;
   std::string event;               ///< with which it begins; empty: at a time
   std::optional<double> begin_s;   ///< empty: its event never happened
   std::optional<double> end_s;     ///< empty: it lasts to the end, or never began
-  std::optional<double> effect_s;  ///< first witnessed; empty: it never took effect
+  std::optional<double> effect_s;  ///< first observed; empty: it never took effect
   /// What it disturbed is as before again, and so is the aid of navigation by it; empty: not seen.
   std::optional<double> recovered_s;
   int witnessed = 0;  ///< times
@@ -196,7 +196,7 @@ struct RunRecord {
   std::vector<FaultRow> faults;
   TelemetryTables telemetry;
   Extensions extensions;
-  TableSet tables;                         ///< of the extensions
+  TableSet tables;                         ///< tables of the extensions
   std::vector<std::string> reading_notes;  ///< what reading the folder had to leave out
 
   template <class Message>
