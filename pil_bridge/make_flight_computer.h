@@ -66,7 +66,7 @@ struct FlightComputerOptions {
   /// 0: the default of the image.
   std::uint64_t step_budget = 0;
 
-  /// Most memory of a library, or of a program that is started; 0: no limit.
+  /// Largest memory of a library, or of a program that is started; 0: no limit.
   std::uint64_t memory_bytes = 0;
 
   double paced_bits_per_s = 0.0;  ///< serial and pty: limits the rate of the line to this; 0: unlimited

@@ -28,9 +28,9 @@ struct RemoteParts {
   double line_bits_per_s = 0.0;  ///< rate of a serial line, 10 bits a byte; 0: as fast as it goes
 };
 
-/// How much of an exchange the flight computer spent computing, s. `waited_s`: from the last packet handed to the line
-/// to the first of the answer. A line of a known rate buffers what it is handed: there it is what the `bytes` of the
-/// exchange leave of it.
+/// Returns the time of an exchange that the flight computer spent computing, s. `waited_s`: from the last packet handed
+/// to the line to the first of the answer. A line of a known rate buffers what it is handed: there it is what the
+/// `bytes` of the exchange leave of it.
 [[nodiscard]] double computing_time(double exchange_s, double waited_s, std::uint64_t bytes, double line_bits_per_s);
 
 class RemoteComputer final : public FlightComputer {
@@ -64,7 +64,7 @@ class RemoteComputer final : public FlightComputer {
   void sort_answer(StepResult& result);
   /// Throws LinkError if the step took more than the budget, after which the board takes no further step.
   void check_budget(const StepReport& report) const;
-  /// If `packet` is a step report: keeps its counters, fills `report`, and returns true.
+  /// Keeps the counters of a packet that is a step report, fills `report`, and returns true.
   bool take_step_report(const Packet& packet, StepReport& report);
 
   RemoteParts parts_;

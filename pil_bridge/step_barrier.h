@@ -27,9 +27,10 @@ struct BarrierTiming {
   /// Time limit without any progress.
   std::chrono::milliseconds give_up_after{30000};
   std::chrono::milliseconds hello_period{100};
-  /// For the first answer to a hello.
+  /// Longest wait for the first answer to a hello.
   std::chrono::milliseconds boot_limit{30000};
-  /// Without another byte of a receiver that is wired to the flight computer, while a step waits for its bytes.
+  /// Longest time without another byte of a receiver that is wired to the flight computer, while a step waits for its
+  /// bytes.
   std::chrono::milliseconds wired_limit{2000};
 };
 

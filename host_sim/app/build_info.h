@@ -1,5 +1,5 @@
 #pragma once
-// Which program this is.
+// Version, commit, compiler and build type of this program.
 
 #include <string>
 

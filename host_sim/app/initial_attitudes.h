@@ -1,5 +1,5 @@
 #pragma once
-// Where the spacecraft of a mission are turned to at the start of the run.
+// Attitudes of the spacecraft of a mission at the start of the run.
 
 #include <filesystem>
 

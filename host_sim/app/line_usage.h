@@ -1,6 +1,6 @@
 #pragma once
-// How long each step's bytes take on the serial line to the flight computer: both directions after each other, for the
-// answer follows the last packet of the step.
+// Time that the bytes of each step take on the serial line to the flight computer: both directions one after the other,
+// as the answer follows the last packet of the step.
 
 #include <cstdint>
 #include <span>

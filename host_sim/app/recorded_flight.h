@@ -18,7 +18,7 @@ namespace vbar::app {
 /// The reason of a run that was stopped by a signal.
 inline constexpr const char* kInterruption = "interrupted";
 
-/// What was asked for: the mission, and how it came about.
+/// Request of a flight: the mission, and how it was given.
 struct FlightOrder {
   const mission::Mission& mission;
   std::string mission_text;            ///< content of the copy in the run folder

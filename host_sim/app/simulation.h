@@ -32,7 +32,7 @@ namespace vbar::app {
 
 using Source = twins::NamedSource;
 
-/// When what happens.
+/// Times of the events of a run.
 struct Timetable {
   struct Burn {
     fsw::GpsTime time;
@@ -56,7 +56,7 @@ struct Timetable {
   std::optional<Uplink> uplink;
 };
 
-/// What takes part in a run. All references must outlive it.
+/// Participants of a run. All references must outlive it.
 struct World {
   twins::TrueWorld& truth;
   std::span<const Source> sources;
@@ -72,7 +72,7 @@ struct World {
   std::function<std::vector<Timetable::Burn>()> more_burns = {};
 };
 
-/// What the simulation knows of a run that is over.
+/// Facts about a run that has ended.
 struct RunFacts {
   struct OfSource {
     std::string name;
@@ -99,7 +99,7 @@ class Simulation {
   /// each naming the source.
   bool run();
 
-  /// After run(), however it ended.
+  /// Returns the facts after run(), however it ended.
   [[nodiscard]] const RunFacts& facts() const { return facts_; }
 
  private:
@@ -108,7 +108,7 @@ class Simulation {
     static constexpr std::int32_t kPriority = 0;
     std::size_t source;
   };
-  /// What a source has been making since it measured.
+  /// Packets that a source has been making since it measured.
   struct CollectPending {
     static constexpr std::int32_t kPriority = 5;
     std::size_t source;

@@ -28,7 +28,7 @@ struct Requirement {
   double confidence = 0.95;
 };
 
-/// Which run folders stay.
+/// Selection of the run folders that stay.
 struct Keep {
   enum class Kind { kSummary, kFailed, kWorst, kAll };
   Kind kind = Kind::kSummary;

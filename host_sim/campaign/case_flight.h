@@ -22,7 +22,7 @@ struct Computer {
 };
 [[nodiscard]] Computer this_computer();
 
-/// What the program does with the arguments that follow its name; the result is its exit code.
+/// Executes the arguments that follow the program's name; the result is its exit code.
 using CommandLine = std::function<int(const std::vector<std::string>& arguments)>;
 
 class CaseFlight {
@@ -52,7 +52,7 @@ class CaseFlight {
     std::string reason = {};
   };
 
-  /// Once the process has ended, or has flown for too long and was ended.
+  /// Returns the end once the process has ended, or has flown for too long and was ended.
   [[nodiscard]] std::optional<End> poll();
 
   [[nodiscard]] const Case& one() const { return one_; }

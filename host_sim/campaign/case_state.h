@@ -1,5 +1,5 @@
 #pragma once
-// How a campaign stands: the state of each case, from the files of its workers.
+// State of each case of a campaign, from the files of its workers.
 
 #include <filesystem>
 #include <map>

@@ -10,7 +10,7 @@
 
 namespace vbar::campaign {
 
-/// What the missions of a campaign use besides the data folder: absolute paths.
+/// Files that the missions of a campaign use besides the data folder: absolute paths.
 struct UsedFiles {
   std::filesystem::path mission;
   std::set<std::filesystem::path> beside_mission;  ///< that the mission names relative to itself

@@ -1,6 +1,6 @@
 #pragma once
-// Where the workers of a campaign run, but for this process: an engine submits them and reports whether any of them
-// still waits or runs. A new engine is one function and one line of the list in engine.cpp.
+// Engines that run the workers of a campaign outside this process: an engine submits them and reports whether any
+// worker still waits or runs. A new engine is one function and one line of the list in engine.cpp.
 
 #include <functional>
 #include <string>
@@ -34,7 +34,7 @@ struct Engine {
   std::vector<std::string> (*jobs_of)(const Folder& folder);
 };
 
-/// Null for an unknown name.
+/// Returns null for an unknown name.
 [[nodiscard]] const Engine* find_engine(std::string_view name);
 [[nodiscard]] std::vector<std::string_view> engine_names();
 

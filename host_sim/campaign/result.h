@@ -41,7 +41,7 @@ class ResultFile {
  public:
   /// Throws as RecordFile, here and below.
   explicit ResultFile(std::filesystem::path file) : file_(std::move(file)) {}
-  /// When it returns, the result survives a loss of power.
+  /// Appends a result, which survives a loss of power once this returns.
   void append(const Result& result);
 
  private:

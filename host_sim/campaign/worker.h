@@ -20,7 +20,8 @@ struct WorkerOptions {
   std::function<bool()> stop_requested;
   /// Command line of this program, for flights in copies of this process where that is the same.
   CommandLine command_line = {};
-  /// After each result and at least once a second: results of this worker so far, and flights under way.
+  /// Is called after each result and at least once a second with the results of this worker so far and its flights
+  /// under way.
   std::function<void(const std::vector<Result>& results, std::size_t flying)> progress = {};
 };
 

@@ -18,7 +18,7 @@ struct Limit {
   std::optional<double> max, min;
 };
 
-/// What the campaign as a whole must show.
+/// Requirement on the campaign as a whole.
 struct Requirement {
   double pass_rate_min = 0.0, confidence = 0.0;  ///< 0 to 1, exclusive
 };
@@ -59,7 +59,7 @@ struct Campaign {
   std::vector<Case> cases;     ///< by number
   std::vector<Figure> figures;
 
-  /// Null if no case has it.
+  /// Returns null if no case has the figure.
   [[nodiscard]] const Figure* figure(std::string_view key) const;
 };
 

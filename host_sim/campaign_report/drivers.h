@@ -1,5 +1,5 @@
 #pragma once
-// Which swept and dispersed quantities the figures of the cases go with.
+// Dependence of the figures of the cases on the swept and dispersed quantities.
 
 #include <string>
 #include <vector>

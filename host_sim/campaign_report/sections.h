@@ -12,7 +12,7 @@ namespace vbar::campaign_report {
 /// Confidence of all bounds on the page.
 inline constexpr double kConfidence = 0.95;
 
-/// What the sections are made of.
+/// Content from which the sections are made.
 struct Content {
   const Campaign& campaign;
   std::vector<Quantity> quantities;

@@ -68,7 +68,7 @@ class RunClock {
 
  private:
   [[nodiscard]] WallClock::Span on_the_wall(fsw::Duration simulated) const;
-  /// How late an event begins.
+  /// Lateness of the start of an event.
   struct Arrival {
     bool slept = false;
     WallClock::Span late{0};

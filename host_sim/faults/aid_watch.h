@@ -1,5 +1,5 @@
 #pragma once
-// Which sources aided navigation and when, by the events that the flight computer sent.
+// Times during which each source aided navigation, by the events that the flight computer sent.
 
 #include <cstdint>
 #include <optional>

@@ -38,7 +38,7 @@ class FaultySource final : public twins::PacketSource {
   /// The truth as this source sees it.
   [[nodiscard]] twins::TruthSnapshot seen(const twins::TruthSnapshot& truth) const;
 
-  /// What befalls the device at an instant that has come since the last measurement.
+  /// Applies the faults of the device whose instants have come since the last measurement.
   void upset_device(fsw::GpsTime time);
 
   /// The tiles of an image, shared with measurements that are pending.

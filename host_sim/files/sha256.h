@@ -31,7 +31,7 @@ class Sha256 {
 
 [[nodiscard]] std::string sha256_of(std::string_view bytes);
 
-/// Nothing if the file cannot be read.
+/// Returns an empty value if the file cannot be read.
 [[nodiscard]] std::optional<std::string> sha256_of_file(const std::filesystem::path& file);
 
 }  // namespace vbar::files

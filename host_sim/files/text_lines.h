@@ -17,10 +17,10 @@ class FormatError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Without the mark of UTF-8 that some programs write before a text.
+/// Returns the text without the mark of UTF-8 that some programs write before it.
 [[nodiscard]] std::string_view without_byte_order_mark(std::string_view text);
 
-/// Without blanks at either end.
+/// Returns the text without blanks at either end.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 
 /// The whole of `text`, blanks at either end aside, as a finite number; Fortran's exponents (1.0D-03) and a leading

@@ -41,7 +41,7 @@ class ChildProcess {
   /// Lets the processes live on that the child leaves behind when it ends by itself, as those of a shell's "&".
   void keep_processes_left_behind() { keeps_group_ = true; }
 
-  /// True once the child has ended by itself or has been ended.
+  /// Returns true once the child has ended by itself or has been ended.
   bool has_ended();
 
   /// Waits for the child to end by itself; true if it did.

@@ -21,7 +21,7 @@ namespace vbar::report {
 [[nodiscard]] Fact consistency_fact(const std::string& name, const std::optional<double>& mean, double degrees,
                                     std::size_t samples);
 
-/// What a reader has to know of the bands, as HTML.
+/// Explanation of the bands for the reader, as HTML.
 inline constexpr const char* kBandNote =
     "<p class=\"note\">95 % bands of NEES and NIS are those of a mean of independent chi-square samples. Successive "
     "errors of a filter are correlated, so that the mean of a consistent filter leaves its band more often.</p>\n";

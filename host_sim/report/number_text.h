@@ -13,7 +13,7 @@ namespace vbar::report {
 [[nodiscard]] std::string fixed(double value, int decimals);
 [[nodiscard]] std::string fixed(const std::optional<double>& value, int decimals);
 
-/// About `digits` significant digits, as shortly as that can be.
+/// Writes about `digits` significant digits, as shortly as possible.
 [[nodiscard]] std::string significant(double value, int digits);
 
 /// 12,345,678.

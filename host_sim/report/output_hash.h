@@ -1,5 +1,5 @@
 #pragma once
-// What makes two runs the same: SHA-256 over the bytes of all maneuver commands, and over those of all telemetry.
+// Hashes that make two runs the same: SHA-256 over the bytes of all maneuver commands, and over those of all telemetry.
 
 #include <cstdint>
 #include <span>

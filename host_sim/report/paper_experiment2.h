@@ -1,6 +1,6 @@
 #pragma once
-// What the paper says of its experiment 2 (navigation by the pose network, waypoints 8 to 10), software and hardware in
-// the loop: to stand beside a run that meets the same waypoints.
+// Published figures of the paper's experiment 2 (navigation by the pose network, waypoints 8 to 10), software and
+// hardware in the loop: to stand beside a run that meets the same waypoints.
 
 #include "host_sim/report/paper_experiment1.h"
 #include "host_sim/report/paper_table.h"

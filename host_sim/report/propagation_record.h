@@ -1,5 +1,5 @@
 #pragma once
-// What a propagation without flight software leaves behind.
+// Record of a propagation without flight software.
 
 #include <filesystem>
 #include <optional>

@@ -1,5 +1,5 @@
 #pragma once
-// What a run was made of: program, mission, data, flight software, computer. It stands in summary.json from the run's
+// Origin of a run: program, mission, data, flight software, computer. It stands in summary.json from the run's
 // first moment; data files and packet log are added at the end.
 
 #include <cstdint>
@@ -30,7 +30,7 @@ struct Provenance {
   friend bool operator==(const Provenance&, const Provenance&) = default;
 };
 
-/// Nothing if the file cannot be read.
+/// Returns an empty value if the file cannot be read.
 [[nodiscard]] std::optional<FileDigest> digest_of(const std::filesystem::path& file);
 
 }  // namespace vbar::report

@@ -1,5 +1,5 @@
 #pragma once
-// What a run leaves behind, as rows: filled while the mission flies, written to the run folder, read back for the
+// Record of a run as rows: filled while the mission flies, written to the run folder, read back for the
 // report. SI units; frames in the names; ROE are mean, times the reference semi-major axis. A row about a message of
 // telemetry is that message (fsw/packets/vbar.lcm) with the truth beside it.
 
@@ -51,7 +51,7 @@ struct AttitudeRow {
   Triple rate_body_radps{};                  ///< angular rate of the body with respect to ECI, in body axes
 };
 
-/// What the flight software said of itself at a step (estimate.csv).
+/// Report of the flight software on itself at a step (estimate.csv).
 struct EstimateRow {
   double time_s = 0.0;
   std::int64_t step = 0;
@@ -128,7 +128,7 @@ using TelemetryTable = std::conditional_t<fsw::packets::is_telemetry(fsw::packet
 using TelemetryTables = decltype(std::tuple_cat(std::tuple<>() VBAR_FOR_EACH_MESSAGE(VBAR_MESSAGE)));
 #undef VBAR_MESSAGE
 
-/// What a source or an actuator reported of a measurement or a burn, or why it failed (notes.csv).
+/// Note of a source or an actuator on a measurement or a burn, or the reason of its failure (notes.csv).
 struct NoteRow {
   double time_s = 0.0;  ///< since the mission's epoch
   std::string source;   ///< "servicer/gnss"
@@ -145,7 +145,7 @@ struct FaultRow {
   std::optional<double> begin_s;   ///< empty: its event never happened
   std::optional<double> end_s;     ///< empty: it lasts to the end, or never began
   std::optional<double> effect_s;  ///< first observed; empty: it never took effect
-  /// What it disturbed is as before again, and so is the aid of navigation by it; empty: not seen.
+  /// Time at which the disturbed quantity and the aid of navigation by it are as before; empty: not seen.
   std::optional<double> recovered_s;
   int witnessed = 0;  ///< times
   std::string evidence;
@@ -180,7 +180,7 @@ class TableSet {
 };
 
 struct Extension;
-/// What modules outside this library add to record, summary and report (extension.h).
+/// Additions of modules outside this library to record, summary and report (extension.h).
 using Extensions = std::span<const Extension* const>;
 
 struct RunRecord {

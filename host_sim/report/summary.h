@@ -31,12 +31,12 @@ struct Sample {
   double time_h = 0.0;  ///< after the epoch
   std::optional<double> navigation_error_m = {}, navigation_error_r_m = {}, navigation_error_t_m = {},
                         navigation_error_n_m = {}, navigation_velocity_error_mps = {};
-  /// As navigation claims: square root of the sum of the variances, and each axis.
+  /// Uncertainty as navigation claims it: square root of the sum of the variances, and each axis.
   std::optional<double> sigma_m = {}, sigma_r_m = {}, sigma_t_m = {}, sigma_n_m = {}, sigma_velocity_mps = {};
   std::optional<double> nees = {}, nees_dimension = {}, nis = {}, nis_dimension = {};
 };
 
-/// How often a source measured, failed and, in real time, began late.
+/// Counts of the measurements of a source, its failures and, in real time, its late starts.
 struct SourceFigures {
   std::string name;  ///< "servicer/gnss"
   std::string kind;  ///< "digital", "recorded" or the name of a testbed
@@ -47,7 +47,7 @@ struct SourceFigures {
   std::uint64_t packets_rejected = 0;  ///< packets of impossible times or values; all reasons are in notes.csv
 };
 
-/// What a testbed says of the run, by name with the unit: "edges_missing", "bench".
+/// Figures of a testbed on the run, by name with the unit: "edges_missing", "bench".
 using TestbedFigures = std::map<std::string, std::variant<double, std::string>>;
 
 /// Burns against the thrust that the mission states (thrust.h).
@@ -71,7 +71,7 @@ struct FlightOutput {
   std::uint64_t inputs_refused = 0;   ///< packets given to it whose reception returned a status other than 0
 };
 
-/// What a run is and what the tables do not hold.
+/// Facts about a run that its tables do not hold.
 struct RunFacts {
   std::string mission;
   std::uint64_t seed = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// What was going on when: bands on rows over time, as SVG inside a page.
+// Bands on rows over time, as SVG inside a page: what happened when.
 
 #include <string>
 #include <vector>

@@ -17,7 +17,7 @@
 
 namespace vbar::report {
 
-/// In order of severity: of several findings the last one gives the word.
+/// Outcomes in order of severity: of several findings the last one gives the word.
 enum class Outcome {
   kAchieved,
   kAchievedWithFaults,
@@ -44,7 +44,7 @@ struct JudgedLimit {
   std::string missed;  ///< the sentence that says by what; empty: met
 };
 
-/// What a mission asks of its run.
+/// Goals of a mission for its run.
 struct Goals {
   bool approaches = false;         ///< guidance flies the waypoint table
   bool retreats = false;           ///< a retreat is what the mission commands
