@@ -6,7 +6,8 @@
 
 namespace vbar::pil {
 
-/// What `file` is instead of an ELF program for 32-bit ARM, little-endian, and what is accepted; empty if it is one.
+/// Returns what `file` is instead of an ELF program for 32-bit ARM, little-endian, and what is accepted; empty if it is
+/// one.
 /// `is_for_linux`: also one that is relocated when it is loaded.
 [[nodiscard]] std::string fault_of_arm_image(const std::string& file, bool is_for_linux);
 

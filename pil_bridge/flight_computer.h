@@ -27,7 +27,7 @@ struct StepReport {
   std::uint32_t stack_bytes = 0;  ///< high-water mark since start-up; 0 if not measured
 };
 
-/// Of a receiver that is wired to the flight computer, since it was started.
+/// Counts of a receiver that is wired to the flight computer, since it was started.
 struct WiredStatistics {
   std::uint64_t bytes = 0;     ///< given to the flight software
   std::uint64_t dropped = 0;   ///< by the flight computer, because its buffer was full
@@ -47,10 +47,11 @@ struct LinkStatistics {
   WiredStatistics wired = {};
 };
 
-/// What the flight software's functions returned in a step, and what it sent that is not in the answer.
+/// Statuses that the flight software's functions returned in a step, and outputs that are not in the answer.
 struct StepTrouble {
-  std::int32_t status = 0;            ///< of the step (vbar_status); of a flight computer behind a link unknown, 0
-  std::uint32_t inputs_refused = 0;   ///< packets whose reception returned a status other than 0; likewise
+  std::int32_t status = 0;  ///< status of the step (vbar_status); unknown, 0, behind a link
+  /// Packets whose reception returned a status other than 0; unknown, 0, behind a link.
+  std::uint32_t inputs_refused = 0;
   std::uint32_t packets_dropped = 0;  ///< that it sent, not of a packet's size or more than an answer holds
 };
 
@@ -76,8 +77,8 @@ class FlightComputer {
   /// numbered upwards from any start. Throws FlightComputerError.
   virtual StepResult step(std::uint32_t step, std::span<const Packet> packets) = 0;
 
-  /// What the flight software retains through a reboot, as of the last step (vbar_gnc_save). Empty if this target or
-  /// its flight software does not give it.
+  /// Returns the state that the flight software retains through a reboot, as of the last step (vbar_gnc_save). Empty if
+  /// this target or its flight software does not provide it.
   /// Throws FlightComputerError.
   [[nodiscard]] virtual std::vector<std::uint8_t> snapshot() { return {}; }
 

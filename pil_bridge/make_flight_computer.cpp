@@ -105,7 +105,7 @@ bool is_device(const std::string& endpoint) {
   return !endpoint.starts_with(kUnix) && !endpoint.starts_with(kTcp);
 }
 
-/// Of the serial line, bits/s; 0: none, or as fast as it goes.
+/// Returns the rate of the serial line, bits/s; 0: none, or as fast as it goes.
 double line_rate(const FlightComputerOptions& options) {
   if (options.link == LinkKind::kUdp) return 0.0;
   if (options.target == Target::kBoard) return is_device(options.endpoint) ? options.baud : 0.0;

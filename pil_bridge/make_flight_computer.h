@@ -62,11 +62,11 @@ struct FlightComputerOptions {
   /// UART.
   std::optional<io::WiredReceiver> receiver = std::nullopt;
 
-  /// Of a step, beyond which the run fails: instructions on zynq_qemu, cycles on a board; others count neither. 0: what
-  /// the image has by default.
+  /// Budget of a step, beyond which the run fails: instructions on zynq_qemu, cycles on a board; others count neither.
+  /// 0: the default of the image.
   std::uint64_t step_budget = 0;
 
-  /// Most memory of a library, or of a program that is started; 0: no limit.
+  /// Largest memory of a library, or of a program that is started; 0: no limit.
   std::uint64_t memory_bytes = 0;
 
   double paced_bits_per_s = 0.0;  ///< serial and pty: limits the rate of the line to this; 0: unlimited

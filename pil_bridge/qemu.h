@@ -17,8 +17,8 @@ inline constexpr int kDefaultIcountShift = 6;
 /// file descriptor `link_fd`, its console (UART1) on standard output.
 std::vector<std::string> zynq_qemu_over_serial(const std::string& elf, int icount_shift, int link_fd);
 
-/// The same with the frame link on Ethernet: UDP port `host_port` of 127.0.0.1 is forwarded to the board's. UART0 is
-/// connected to the serial device `receiver`, if that is not empty.
+/// Returns the command line with the frame link on Ethernet: UDP port `host_port` of 127.0.0.1 is forwarded to the
+/// board's. UART0 is connected to the serial device `receiver`, if that is not empty.
 std::vector<std::string> zynq_qemu_over_udp(const std::string& elf, int icount_shift, std::uint16_t host_port,
                                             const std::string& receiver = {});
 

@@ -21,16 +21,16 @@ struct RemoteParts {
   std::unique_ptr<FrameTransport> transport;
   BarrierTiming timing;
   std::uint8_t spacecraft = 0;
-  /// Of the emulator; without it the board's timer ticks cannot be converted to instructions.
+  /// Description of the emulator; without it the board's timer ticks cannot be converted to instructions.
   std::optional<int> icount_shift;
   std::uint64_t step_budget = 0;  ///< in instructions with `icount_shift`, else in cycles; 0: that of the board
-  std::optional<io::WiredReceiver> receiver = std::nullopt;  ///< that is wired to the flight computer
-  double line_bits_per_s = 0.0;  ///< of a serial line, 10 bits a byte; 0: as fast as it goes
+  std::optional<io::WiredReceiver> receiver = std::nullopt;  ///< receiver that is wired to the flight computer
+  double line_bits_per_s = 0.0;  ///< rate of a serial line, 10 bits a byte; 0: as fast as it goes
 };
 
-/// How much of an exchange the flight computer spent computing, s. `waited_s`: from the last packet handed to the line
-/// to the first of the answer. A line of a known rate buffers what it is handed: there it is what the `bytes` of the
-/// exchange leave of it.
+/// Returns the time of an exchange that the flight computer spent computing, s. `waited_s`: from the last packet handed
+/// to the line to the first of the answer. A line of a known rate buffers what it is handed: there it is what the
+/// `bytes` of the exchange leave of it.
 [[nodiscard]] double computing_time(double exchange_s, double waited_s, std::uint64_t bytes, double line_bits_per_s);
 
 class RemoteComputer final : public FlightComputer {
@@ -46,7 +46,7 @@ class RemoteComputer final : public FlightComputer {
   [[nodiscard]] std::string description() const override { return parts_.name + ": " + board_name_; }
   void close() override;
 
-  /// Of the process that runs the flight computer, -1 if there is none. For tests that end it.
+  /// Returns the number of the process that runs the flight computer, -1 if there is none. For tests that end it.
   [[nodiscard]] int process_id() const { return parts_.process ? parts_.process->pid() : -1; }
 
  private:
@@ -64,7 +64,7 @@ class RemoteComputer final : public FlightComputer {
   void sort_answer(StepResult& result);
   /// Throws LinkError if the step took more than the budget, after which the board takes no further step.
   void check_budget(const StepReport& report) const;
-  /// If `packet` is a step report: keeps its counters, fills `report`, and returns true.
+  /// Keeps the counters of a packet that is a step report, fills `report`, and returns true.
   bool take_step_report(const Packet& packet, StepReport& report);
 
   RemoteParts parts_;
@@ -74,7 +74,7 @@ class RemoteComputer final : public FlightComputer {
   std::string failure_;  ///< why this computer can no longer be used; empty while it can
   bool closed_ = false;
   LinkStatistics board_counters_;      ///< the board's counters, from its last step report
-  std::uint32_t packets_dropped_ = 0;  ///< likewise
+  std::uint32_t packets_dropped_ = 0;  ///< also from its last step report
 };
 
 }  // namespace vbar::pil

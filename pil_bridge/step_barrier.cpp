@@ -25,7 +25,7 @@ std::optional<std::string> board_error(const FrameView& frame) {
   return text.substr(kBoardErrorPrefix.size());
 }
 
-/// Of a session that was begun: throws SessionLost if the board says that it has ended.
+/// Checks an answer of a session that was begun: throws SessionLost if the board says that it has ended.
 void check_session(const FrameView& frame) {
   if (frame.header.type != FrameType::kHelloAck) return;
   if (const auto error = board_error(frame)) throw SessionLost("the board has lost its session: " + *error);
@@ -86,7 +86,7 @@ std::optional<std::uint64_t> StepBarrier::receiver_count(Clock::time_point deadl
     if (frame->header.type == FrameType::kReceiverCount && frame->payload.size() == fsw::link::kReceiverCountBytes)
       return fsw::packets::read_big_endian<std::uint64_t>(frame->payload, 0);
     check_session(*frame);
-    ++counters_.frames_duplicated;  // of a step that has been answered
+    ++counters_.frames_duplicated;  // frame of a step that has been answered
   }
   watch_();
   return std::nullopt;
@@ -174,7 +174,7 @@ void StepBarrier::ask(FrameType question, std::span<const std::uint8_t> payload,
     while (const auto frame = receive(next_question)) {
       check_session(*frame);
       if (frame->header.type == answer && accepts(frame->payload)) return;
-      ++counters_.frames_duplicated;  // of a step, or of a question, that has been answered
+      ++counters_.frames_duplicated;  // frame of a step, or of a question, that has been answered
     }
     watch_();
   }

@@ -27,9 +27,10 @@ struct BarrierTiming {
   /// Time limit without any progress.
   std::chrono::milliseconds give_up_after{30000};
   std::chrono::milliseconds hello_period{100};
-  /// For the first answer to a hello.
+  /// Longest wait for the first answer to a hello.
   std::chrono::milliseconds boot_limit{30000};
-  /// Without another byte of a receiver that is wired to the flight computer, while a step waits for its bytes.
+  /// Longest time without another byte of a receiver that is wired to the flight computer, while a step waits for its
+  /// bytes.
   std::chrono::milliseconds wired_limit{2000};
 };
 
@@ -66,14 +67,15 @@ class StepBarrier {
   /// been reset since connect().
   std::vector<Packet> exchange(std::uint32_t step, std::span<const Packet> packets);
 
-  /// Of the last exchange: from the last packet handed to the line, or handed to it again, to the first packet of the
-  /// answer.
+  /// Returns the wait of the last exchange: from the last packet handed to the line, or handed to it again, to the
+  /// first packet of the answer.
   [[nodiscard]] Clock::duration waited() const { return first_answer_ - last_sent_; }
 
   /// The snapshot of the flight software between two steps; empty if it gives none. Throws LinkError.
   std::vector<std::uint8_t> read_snapshot();
 
-  /// Before the first step: gives the flight software a snapshot; the status of its restoration, 0 if it was accepted.
+  /// Gives the flight software a snapshot before the first step. Returns the status of its restoration, 0 if it was
+  /// accepted.
   /// Throws LinkError.
   std::int32_t write_snapshot(std::span<const std::uint8_t> snapshot);
 

@@ -18,7 +18,7 @@ using LinkError = io::ChannelError;
 
 struct TransportCounters {
   std::uint64_t bytes_sent = 0;         ///< as encoded on the wire
-  std::uint64_t bytes_received = 0;     ///< likewise
+  std::uint64_t bytes_received = 0;     ///< as encoded on the wire
   std::uint64_t frames_rejected = 0;    ///< dropped because of invalid line coding
   std::uint64_t foreign_datagrams = 0;  ///< from an address other than that of the peer, discarded
 };

@@ -14,7 +14,7 @@ namespace vbar::pil {
 std::unique_ptr<FrameTransport> make_udp_transport(const std::string& peer_address, std::uint16_t peer_port,
                                                    std::uint16_t local_port = 0);
 
-/// Likewise, on a socket that is bound already.
+/// Makes the same on a socket that is bound already.
 std::unique_ptr<FrameTransport> make_udp_transport(io::FileDescriptor bound_socket, const std::string& peer_address,
                                                    std::uint16_t peer_port);
 

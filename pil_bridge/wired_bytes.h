@@ -16,19 +16,19 @@ namespace vbar::pil {
 
 class WiredBytes {
  public:
-  /// To be made when the flight computer has answered its hello: counts begin there.
+  /// Is made when the flight computer has answered its hello: counts begin there.
   WiredBytes(io::WiredReceiver receiver, std::chrono::milliseconds limit);
 
   /// Asks for the number of bytes that have arrived at the flight computer; nothing if there is no answer by a
   /// deadline.
   using AskCount = std::function<std::optional<std::uint64_t>(Clock::time_point deadline)>;
 
-  /// In lock-step: returns when everything the receiver has sent has arrived, or when nothing more has arrived within
+  /// Returns, in lock-step, when everything the receiver has sent has arrived, or when nothing more has arrived within
   /// the limit. What has not arrived by then is missing: it is counted once and not waited for again.
   void wait(const AskCount& ask);
 
-  /// If `packet` is a wired_bytes: the gnss_bytes that the flight software was given. Throws LinkError if its content
-  /// is invalid.
+  /// Returns the gnss_bytes that the flight software was given, if `packet` is a wired_bytes. Throws LinkError if its
+  /// content is invalid.
   std::optional<Packet> take(const Packet& packet);
 
   [[nodiscard]] const WiredStatistics& statistics() const { return statistics_; }

@@ -140,7 +140,7 @@ class Recording final : public RunObserver {
   }
 
  private:
-  /// Packets that are none are in the log only.
+  /// Returns the valid packets; invalid ones are in the log only.
   static std::vector<fsw::packets::PacketView> parsed(std::span<const pil::Packet> packets) {
     std::vector<fsw::packets::PacketView> views;
     for (const pil::Packet& bytes : packets)
@@ -237,7 +237,7 @@ void summarise_run(const RunFacts& facts, std::span<const Source> sources, repor
   }
 }
 
-/// Sources with faults of theirs are wrapped; the others are not touched.
+/// Wraps the sources that have faults; the others are unchanged.
 sensors::MadeSources with_faults(sensors::MadeSources made, const std::shared_ptr<faults::FaultSchedule>& schedule) {
   for (Source& source : made.sources) {
     const auto is_of_it = [&](const mission::Fault& fault) { return faults::is_of_source(fault, source.name); };
@@ -314,7 +314,7 @@ bool AssembledMission::fly(const Surroundings& surroundings, report::RunRecord& 
   std::vector<RunObserver*> observers(surroundings.observers.begin(), surroundings.observers.end());
   observers.insert(observers.end(), {&recording, &line});
   faults::FaultLog fault_log(mission_, *faults_, servicer_.name, servicer_.observes(), record);
-  // Events first: what begins with one has begun for its witness.
+  // Events first: a fault that begins with an event has begun when its observer sees the same packets.
   if (!mission_.faults.empty()) observers.insert(observers.end(), {faults_.get(), &fault_log});
   faults::UncommandedImpulses impulses(faults_);
   faults::FaultyComputer faulty_computer(

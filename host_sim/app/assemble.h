@@ -1,5 +1,5 @@
 #pragma once
-// A mission as a world that can be flown: the one place where both are known.
+// Composition root: makes truth, sources and thruster of a mission, and flies them with a flight computer.
 
 #include <filesystem>
 #include <functional>
@@ -22,14 +22,14 @@ namespace vbar::app {
 
 class AssembledMission {
  public:
-  /// What a run has around it.
+  /// Environment of a run.
   struct Surroundings {
     pil::FlightComputer& flight_computer;
     engine::WallClock& wall;
     std::span<RunObserver* const> observers;
     std::function<void(fsw::Duration)> progress;  ///< as in World
     std::function<bool()> stop_requested;         ///< as in World
-    std::filesystem::path folder = {};            ///< of the run, for files of testbeds; empty: none are kept
+    std::filesystem::path folder = {};            ///< run folder, for files of testbeds; empty: none are kept
   };
 
   /// `mission` must outlive it. Throws what truth, orbits, attitudes, twins and their data throw, and
@@ -47,17 +47,17 @@ class AssembledMission {
   void start();
 
   /// Flies and fills the record, then stops the sources, however the run ended. Throws as Simulation::run; the record
-  /// then holds what was flown. Starts the sources if nobody did. To be called once.
+  /// then holds what was flown. Starts the sources unless start() was called. To be called once.
   bool fly(const Surroundings& surroundings, report::RunRecord& record);
 
-  /// The receiver that is to be connected to the flight computer, of a source that was started.
+  /// Returns the receiver that is to be connected to the flight computer, of a source that was started.
   [[nodiscard]] std::optional<io::WiredReceiver> wired_receiver() const;
 
-  /// Why the line to the flight computer is too slow for the first step; empty if it is not (line_usage.h).
+  /// Returns why the line to the flight computer is too slow for the first step; empty if it is fast enough.
   [[nodiscard]] std::string slow_line() const;
 
   [[nodiscard]] const RunFacts& facts() const { return facts_; }
-  /// On data that are missing, predicted or used in part.
+  /// Returns notes on data that are missing, predicted or used in part.
   [[nodiscard]] std::vector<std::string> data_notes() const;
   [[nodiscard]] std::span<const Source> sources() const { return made_.sources; }
 
@@ -75,7 +75,7 @@ class AssembledMission {
   std::unique_ptr<twins::Actuator> thruster_;
   engine::LinkModel board_link_;
   Timetable timetable_;
-  std::vector<twins::Packet> telecommands_;  ///< that a flight computer needs when it begins
+  std::vector<twins::Packet> telecommands_;  ///< telecommands that a flight computer needs when it starts
   RunFacts facts_;
   StartedSources started_{made_.sources};  // last: it stops the sources
 };

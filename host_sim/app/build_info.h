@@ -1,12 +1,12 @@
 #pragma once
-// Which program this is.
+// Version, commit, compiler and build type of this program.
 
 #include <string>
 
 namespace vbar::app {
 
 extern const char* const
-    kBuildCommit;  ///< of the source tree, "+" behind it if files were changed; "unknown" outside git
+    kBuildCommit;  ///< commit of the source tree, "+" behind it if files were changed; "unknown" outside git
 
 /// "0.3.0"
 [[nodiscard]] std::string build_version();

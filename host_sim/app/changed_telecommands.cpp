@@ -18,7 +18,7 @@ using fsw::packets::PacketView;
 constexpr std::array kInFlight{Apid::kGncConfiguration, Apid::kWaypointTable, Apid::kModeCommand,
                                Apid::kSafetyConfiguration};
 
-/// Of telecommands of this program, which are whole.
+/// Parses a telecommand of this program, which is whole.
 PacketView view_of(const twins::Packet& packet) {
   return fsw::packets::parse_packet(packet).value();
 }

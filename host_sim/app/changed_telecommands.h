@@ -8,9 +8,9 @@
 
 namespace vbar::app {
 
-/// Those of `wanted` that are not among `sent` by content, dated `time`. Throws std::runtime_error for one that sets up
-/// the flight software before its first step (all but guidance, waypoints, safety and mode), and for one that was sent
-/// and cannot be taken back.
+/// Returns the telecommands of `wanted` whose content is not among `sent`, dated `time`. Throws std::runtime_error for
+/// one that sets up the flight software before its first step (all but guidance, waypoints, safety and mode), and for
+/// one that was sent and cannot be revoked.
 [[nodiscard]] std::vector<twins::Packet> changed_telecommands(const std::vector<twins::Packet>& sent,
                                                               const std::vector<twins::Packet>& wanted,
                                                               fsw::GpsTime time);

@@ -1,5 +1,5 @@
 #pragma once
-// Means of command lines beyond those of CLI11: ranges in messages, and the option that was meant.
+// Additions to CLI11: ranges in messages, and the option that was meant.
 
 #include <cstdint>
 #include <limits>

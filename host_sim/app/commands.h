@@ -29,7 +29,7 @@ int propagate_command(const PropagateOptions& options);
 
 struct ReplayOptions {
   std::filesystem::path run_folder;
-  std::vector<std::string> overrides;  ///< of the flight computer only
+  std::vector<std::string> overrides;  ///< settings of the flight computer only
   bool trust = false;                  ///< libraries, devices and addresses that the folder names may be used
   bool quiet = false;
   std::filesystem::path save;  ///< file of a snapshot to write; empty: none
@@ -41,8 +41,8 @@ int replay_command(const ReplayOptions& options);
 struct ResumeOptions {
   std::filesystem::path run_folder;
   std::optional<double> branch_at_h;   ///< hours of the mission; none: the run itself is continued
-  std::vector<std::string> overrides;  ///< of the branch, "path=value"
-  std::filesystem::path out;           ///< of the branch; empty: report::default_run_folder
+  std::vector<std::string> overrides;  ///< settings of the branch, "path=value"
+  std::filesystem::path out;           ///< folder of the branch; empty: report::default_run_folder
   bool trust = false;                  ///< libraries, devices and addresses that the folder names may be used
   bool quiet = false;
 };
@@ -50,10 +50,10 @@ int resume_command(const ResumeOptions& options);
 
 struct ReportOptions {
   std::vector<std::filesystem::path> run_folders;
-  std::filesystem::path out;       ///< of the comparison; empty: beside the first run
+  std::filesystem::path out;       ///< file of the comparison; empty: beside the first run
   bool fail_if_different = false;  ///< kDifferent if a run's outputs are not those of the first
 };
-/// Of one run: its report.html. Of several: a comparison.
+/// Writes the report.html of one run, or a comparison of several.
 int report_command(const ReportOptions& options);
 
 struct CheckOptions {

@@ -19,7 +19,8 @@ namespace {
 
 constexpr std::string_view kMissionArgument = "mission";
 
-// Of both shells: @TABLE@ gives, for a command, its commands, its options, those with a value, and its first argument.
+// Shared by both shells: @TABLE@ gives, for a command, its commands, its options, those with a value, and its first
+// argument.
 constexpr std::string_view kTableFunction = R"SCRIPT(_vbar_table() {
   case "$1" in
 @TABLE@  esac

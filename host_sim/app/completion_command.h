@@ -15,7 +15,7 @@ void add_completion_command(CLI::App& program, int& exit_code);
 /// --set, are those of the program when it is asked for them.
 [[nodiscard]] std::string completion_script(const CLI::App& program, const std::string& shell);
 
-/// What --set accepts for a mission, one assignment "path=" a line; empty if there is no such mission.
+/// Returns what --set accepts for a mission, one assignment "path=" a line; empty if there is no such mission.
 [[nodiscard]] std::string settable_keys(const std::filesystem::path& mission);
 
 }  // namespace vbar::app

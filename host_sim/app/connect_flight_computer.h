@@ -1,5 +1,5 @@
 #pragma once
-// From a mission's words to its flight computer, started and answering.
+// Makes the flight computer that a mission describes, started and answering.
 
 #include <memory>
 #include <optional>

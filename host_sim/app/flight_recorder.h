@@ -1,5 +1,5 @@
 #pragma once
-// Turns what happens in a run into the rows of its record: truth, what the flight software said, maneuvers, waypoints
+// Turns what happens in a run into the rows of its record: truth, telemetry, maneuvers, waypoints
 // met.
 
 #include <string>
@@ -46,7 +46,7 @@ class FlightRecorder {
   /// A burn of the mission file is about to happen.
   void on_prescribed(fsw::GpsTime time, const maneuver_command& command);
 
-  /// What became of a command.
+  /// Records the execution of a command.
   void on_execution(fsw::GpsTime time, const executed_maneuver& executed);
 
  private:

@@ -9,7 +9,7 @@
 
 namespace vbar::app {
 
-/// At the start, with mission.toml not yet written.
+/// Returns the provenance at the start, with mission.toml not yet written.
 [[nodiscard]] report::Provenance provenance_of(const mission::Mission& mission,
                                                const std::vector<std::string>& overrides,
                                                const std::string& mission_text);

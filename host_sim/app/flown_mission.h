@@ -1,5 +1,5 @@
 #pragma once
-// The mission that a run folder says was flown. A folder may come from anywhere: what it names is neither loaded nor
+// The recorded mission of a run folder. A folder may come from anywhere: what it names is neither loaded nor
 // opened unless the user names or trusts it.
 
 #include <filesystem>

@@ -14,7 +14,8 @@ namespace vbar::app {
 
 class FlownTruth final : public twins::TrueWorld, public twins::TruthOutlook {
  public:
-  /// At the mission's start; `servicer` is the spacecraft that flies. Throws what truth, orbits and attitudes throw.
+  /// Starts at the mission's start; `servicer` is the spacecraft that flies. Throws what truth, orbits and attitudes
+  /// throw.
   FlownTruth(const mission::Mission& mission, const mission::Spacecraft& servicer,
              const std::filesystem::path& data_directory);
 
@@ -24,8 +25,8 @@ class FlownTruth final : public twins::TrueWorld, public twins::TruthOutlook {
   void point(fsw::GpsTime time, const fsw::Vector3& boresight_rtn, const fsw::Vector3& boresight_rate_rtn) override;
   [[nodiscard]] double wall_s() const override { return truth_.statistics().wall_s; }
 
-  /// Within the last integration step it is the truth; where that ends before `time`, perturbations are taken as
-  /// constant from there on (a micrometre in a second). An attitude goes on with its angular acceleration.
+  /// Returns the truth within the last integration step; where that ends before `time`, perturbations are constant from
+  /// there on (a micrometre in a second), and an attitude continues with its angular acceleration.
   [[nodiscard]] twins::TruthSnapshot at(fsw::GpsTime time) override;
 
   [[nodiscard]] const truth::TruthModel& model() const { return truth_; }
@@ -40,7 +41,7 @@ class FlownTruth final : public twins::TrueWorld, public twins::TruthOutlook {
   std::size_t servicer_ = 0;
   bool is_pointed_ = false;  ///< the servicer's attitude is commanded
   std::vector<std::string> names_;
-  std::vector<std::size_t> indices_;  ///< in the truth, of each name
+  std::vector<std::size_t> indices_;  ///< index in the truth of each name
 };
 
 }  // namespace vbar::app

@@ -24,7 +24,7 @@ namespace {
 struct Domain {
   int solver = waypoint::kSolverNone;
   std::string_view name;         ///< in missions
-  std::string_view description;  ///< of the algorithm
+  std::string_view description;  ///< words for the algorithm
   double max_eccentricity = 0.0;
 };
 

@@ -8,8 +8,8 @@
 
 namespace vbar::app {
 
-/// What the mission says of its truth, with the data in `data_directory`. Throws mission::MissionError for a data file
-/// that the mission names and that cannot be opened.
+/// Returns the truth settings of the mission, with the data in `data_directory`. Throws mission::MissionError for a
+/// data file that the mission names and that cannot be opened.
 truth::TruthSettings truth_settings(const mission::Mission& mission, const std::filesystem::path& data_directory);
 
 /// Adds every spacecraft of `mission` to `truth`, which stands at the mission's epoch, in the mission's order of kinds:

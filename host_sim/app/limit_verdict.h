@@ -22,7 +22,7 @@ struct CheckedRun {
 /// empty. Throws Refused if there is no limit.
 [[nodiscard]] CheckedRun checked_run(const std::filesystem::path& folder, const std::filesystem::path& limits_file);
 
-/// The same by the run's own limits; nothing if it has none.
+/// Judges the run by its own limits; returns an empty value if it has none.
 void print_own_limits(const std::filesystem::path& run_folder);
 
 }  // namespace vbar::app

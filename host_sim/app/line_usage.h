@@ -1,6 +1,6 @@
 #pragma once
-// How long each step's bytes take on the serial line to the flight computer: both directions after each other, for the
-// answer follows the last packet of the step.
+// Time that the bytes of each step take on the serial line to the flight computer: both directions one after the other,
+// as the answer follows the last packet of the step.
 
 #include <cstdint>
 #include <span>
@@ -12,15 +12,15 @@
 
 namespace vbar::app {
 
-/// Of a serial line that cannot carry the packets of the first step, which are known before the flight, within its
-/// period: one sentence that names the rate. Empty for any other line.
+/// Returns one sentence that names the rate of a serial line, if it cannot carry the packets of the first step, which
+/// are known before the flight, within its period; empty for any other line.
 [[nodiscard]] std::string slow_line(const mission::FlightComputer& computer, fsw::Duration step_period,
                                     std::span<const pil::Packet> first_packets);
 
 class LineUsage {
  public:
-  /// `before`: of the link before the first step. Nothing is told of a flight computer without a serial line, or with
-  /// one that is as fast as it goes.
+  /// `before`: counts of the link before the first step. Nothing is reported for a flight computer without a serial
+  /// line, or with one that is as fast as it goes.
   LineUsage(const mission::FlightComputer& computer, fsw::Duration step_period, const pil::LinkStatistics& before);
 
   /// `link`: as it stands after the step.

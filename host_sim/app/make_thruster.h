@@ -1,5 +1,5 @@
 #pragma once
-// From the mission file's thruster to its twin.
+// Makes the twin of the thruster of a mission file.
 
 #include <memory>
 

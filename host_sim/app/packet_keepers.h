@@ -1,5 +1,5 @@
 #pragma once
-// Who sees the packets of a run: the log, the hashes, and, when asked, the LCM bus.
+// Recorders of the packets of a run: the log, the hashes and, if the mission asks for it, the LCM bus.
 
 #include <filesystem>
 #include <memory>
@@ -24,11 +24,11 @@ class PacketKeepers {
 
   [[nodiscard]] std::span<RunObserver* const> observers() const { return observers_; }
 
-  /// The run has ended, and everything is in the files. Throws std::runtime_error that names the one that takes no
-  /// more.
+  /// Writes everything to the files at the end of the run. Throws std::runtime_error that names a file that cannot be
+  /// written.
   void finish();
 
-  /// Of the maneuver commands, and of all telemetry, so far.
+  /// Returns the SHA-256 of the maneuver commands, and that of all telemetry, so far.
   [[nodiscard]] std::string commands_sha256() const;
   [[nodiscard]] std::string telemetry_sha256() const;
 

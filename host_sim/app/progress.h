@@ -9,7 +9,7 @@ namespace vbar::app {
 
 class ProgressLine {
  public:
-  /// Of a run that simulates `total`; `quiet` draws nothing.
+  /// Draws the line of a run that simulates `total`; `quiet` draws nothing.
   ProgressLine(fsw::Duration total, bool quiet);
   ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;

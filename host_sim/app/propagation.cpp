@@ -21,7 +21,7 @@ truth::TruthStatistics since(const truth::TruthStatistics& before, const truth::
 }  // namespace
 
 /// Sums what drag takes from the semi-major axis: da/dt = 2 a^2 / GM (velocity . drag), by the trapezoidal rule over
-/// the sampling times. From the motion itself it could not be told: the field's tesserals move the mean semi-major axis
+/// the sampling times. The motion itself does not show it: the field's tesserals move the mean semi-major axis
 /// by ten metres, more than a day's drag.
 class Propagation::DecayMeter {
  public:

@@ -1,5 +1,5 @@
 #pragma once
-// The truth of a mission alone: its spacecraft flown from start to end without flight software, sensors or burns.
+// Propagation of the truth of a mission: from start to end without flight software, sensors or burns.
 
 #include <cstddef>
 #include <filesystem>
@@ -31,7 +31,7 @@ class Propagation {
   [[nodiscard]] std::vector<std::string> names() const;
 
   /// Flies. A spacecraft that re-enters, and whatever else stops the truth, makes the record incomplete, as does
-  /// `stop_requested`, asked at each sampling time. `progress` is told the simulated span.
+  /// `stop_requested`, asked at each sampling time. `progress` receives the simulated span.
   report::PropagationRecord run(const RowSink& sink, const std::function<void(fsw::Duration)>& progress,
                                 const std::function<bool()>& stop_requested);
 
@@ -44,7 +44,7 @@ class Propagation {
   const mission::Mission& mission_;
   truth::TruthModel truth_;
   truth::EarthRotation earth_rotation_;
-  std::vector<std::size_t> truth_index_;  ///< of each spacecraft of the mission
+  std::vector<std::size_t> truth_index_;  ///< index in the truth of each spacecraft of the mission
 };
 
 }  // namespace vbar::app

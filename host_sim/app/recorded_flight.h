@@ -18,14 +18,14 @@ namespace vbar::app {
 /// The reason of a run that was stopped by a signal.
 inline constexpr const char* kInterruption = "interrupted";
 
-/// What was asked for: the mission, and how it came about.
+/// Request of a flight: the mission, and how it was given.
 struct FlightOrder {
   const mission::Mission& mission;
-  std::string mission_text;            ///< of the copy in the run folder
+  std::string mission_text;            ///< content of the copy in the run folder
   std::vector<std::string> overrides;  ///< "path=value", as given
   bool quiet = false;
   std::string branch = {};       ///< text of kBranchCopy; empty: the run is no branch
-  twins::EventCheck check = {};  ///< of the events of the packet log; may be empty
+  twins::EventCheck check = {};  ///< check of the events of the packet log; may be empty
 };
 
 /// The mission with its sources started, if `start`: whatever cannot fly is refused before there is a run folder.

@@ -1,5 +1,5 @@
 #pragma once
-// What a replay finds out about a run's log before it feeds it to a flight computer.
+// Checks of a run's log before a replay feeds it to a flight computer.
 
 #include <cstdint>
 #include <filesystem>
@@ -32,7 +32,7 @@ using RecordedSteps = std::map<std::uint32_t, RecordedStep>;
 /// Whether the run wrote its summary at its end, complete or not; one that was killed did not.
 [[nodiscard]] bool has_ended(const report::Summary& summary);
 
-/// Why the log cannot be that of the run, or lacks a part of it; nothing if nothing is wrong with it.
+/// Returns why the log is not that of the run or lacks a part of it; empty if it is whole.
 [[nodiscard]] std::optional<Verdict> verdict_on_log(const std::filesystem::path& file, const twins::PacketLog& log,
                                                     const RecordedSteps& steps, const report::Summary& summary);
 

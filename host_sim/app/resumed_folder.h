@@ -1,5 +1,5 @@
 #pragma once
-// Where a resumed run is written, and how it takes the place of the run that it continues. It grows in a folder beside
+// Folder of a resumed run, and its exchange with that of the run that it continues. It grows in a folder beside
 // that run, whose log is not touched until the other one is longer: a resume that is killed can be resumed.
 
 #include <filesystem>

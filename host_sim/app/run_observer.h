@@ -1,5 +1,5 @@
 #pragma once
-// Who watches a run: the log, the record, the hashes, a live view.
+// Interface of an observer of a run: the log, the record, the hashes, a live view.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace vbar::app {
 
-/// Is called as things happen, in their order; overrides what it wants to see.
+/// Is called for each event in the order of time; an observer overrides the functions of the events that it needs.
 class RunObserver {
  public:
   RunObserver() = default;
@@ -23,12 +23,12 @@ class RunObserver {
 
   /// The truth of a measurement of a source that is evaluated (PacketSource::truth_is_compared).
   virtual void on_measured(std::string_view /*source*/, const twins::TruthSnapshot& /*truth*/) {}
-  /// From what packets that are yet to come can be made again (twins::Measurement::recipe).
+  /// Data from which packets that are still to come can be made again (twins::Measurement::recipe).
   virtual void on_recipe(fsw::GpsTime /*time*/, const twins::LoggedImage& /*recipe*/) {}
   /// An image that cannot be made again (twins::Measurement::recording), before its packets are passed on. An exception
   /// ends the run.
   virtual void on_recording(fsw::GpsTime /*time*/, const twins::LoggedImage& /*recording*/) {}
-  /// A source or an actuator said something about a measurement or a burn.
+  /// A source or an actuator has added a note to a measurement or a burn.
   virtual void on_note(fsw::GpsTime /*time*/, std::string_view /*source*/, const twins::Note& /*note*/) {}
   /// A source failed an epoch, in one sentence.
   virtual void on_failure(fsw::GpsTime /*time*/, std::string_view /*source*/, std::string_view /*reason*/) {}
@@ -38,15 +38,16 @@ class RunObserver {
 
   /// A flight step begins.
   virtual void on_truth(const twins::TruthSnapshot& /*truth*/) {}
-  /// It is over: all its packets, those of a wired receiver included and the tick last, and the packets of the answer.
+  /// A flight step has ended: `inputs` are all its packets, those of a wired receiver included and the tick last;
+  /// `outputs` are the packets of the answer.
   virtual void on_step(std::uint32_t /*step*/, fsw::GpsTime /*time*/, std::span<const pil::Packet> /*inputs*/,
                        std::span<const pil::Packet> /*outputs*/) {}
-  /// The same answer with what it cost.
+  /// The answer of the step, with its cost.
   virtual void on_answer(fsw::GpsTime /*time*/, const pil::StepResult& /*answer*/) {}
 
   /// A burn of the timetable is about to happen.
   virtual void on_prescribed(fsw::GpsTime /*time*/, const maneuver_command& /*command*/) {}
-  /// A burn has been executed or refused.
+  /// A burn has been executed or rejected.
   virtual void on_execution(fsw::GpsTime /*time*/, const executed_maneuver& /*executed*/) {}
 };
 

@@ -32,7 +32,7 @@ namespace vbar::app {
 
 using Source = twins::NamedSource;
 
-/// When what happens.
+/// Times of the events of a run.
 struct Timetable {
   struct Burn {
     fsw::GpsTime time;
@@ -56,7 +56,7 @@ struct Timetable {
   std::optional<Uplink> uplink;
 };
 
-/// What takes part in a run. All references must outlive it.
+/// Participants of a run. All references must outlive it.
 struct World {
   twins::TrueWorld& truth;
   std::span<const Source> sources;
@@ -67,12 +67,12 @@ struct World {
   std::span<RunObserver* const> observers;
   std::function<void(fsw::Duration)> progress = {};  ///< gets the simulated span after each step; may be empty
   std::function<bool()> stop_requested = {};         ///< asked often; may be empty
-  /// Burns that nobody commanded and whose times, the present or later, have become known; asked at the start and after
+  /// Uncommanded burns whose times, the present or later, have become known; asked at the start and after
   /// each event. May be empty.
   std::function<std::vector<Timetable::Burn>()> more_burns = {};
 };
 
-/// What the simulation knows of a run that is over.
+/// Facts about a run that has ended.
 struct RunFacts {
   struct OfSource {
     std::string name;
@@ -85,7 +85,7 @@ struct RunFacts {
   fsw::Duration simulated;
   // Wall-clock time, s; the shares are parts of `wall_s`.
   double wall_s = 0.0, truth_s = 0.0, flight_s = 0.0, link_s = 0.0, sources_s = 0.0;
-  std::string cost_unit = "none";  ///< of pil::StepReport::count
+  std::string cost_unit = "none";  ///< unit of pil::StepReport::count
   engine::DeadlineReport deadlines;
   std::vector<OfSource> sources;
 };
@@ -99,7 +99,7 @@ class Simulation {
   /// each naming the source.
   bool run();
 
-  /// After run(), however it ended.
+  /// Returns the facts after run(), however it ended.
   [[nodiscard]] const RunFacts& facts() const { return facts_; }
 
  private:
@@ -108,7 +108,7 @@ class Simulation {
     static constexpr std::int32_t kPriority = 0;
     std::size_t source;
   };
-  /// What a source has been making since it measured.
+  /// Packets that a source has been making since it measured.
   struct CollectPending {
     static constexpr std::int32_t kPriority = 5;
     std::size_t source;

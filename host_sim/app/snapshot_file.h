@@ -16,7 +16,8 @@ struct Snapshot {
 /// Throws std::runtime_error.
 void write_snapshot(const std::filesystem::path& file, const Snapshot& snapshot);
 
-/// Throws Refused if the file cannot be read, is none or is not whole. Its content is checked by the flight software.
+/// Throws Refused if the file cannot be read, is not a snapshot or is not whole. Its content is checked by the flight
+/// software.
 [[nodiscard]] Snapshot read_snapshot(const std::filesystem::path& file);
 
 }  // namespace vbar::app

@@ -10,7 +10,7 @@ namespace vbar::app {
 
 class StartedSources {
  public:
-  /// None is started yet. `sources` must outlive it.
+  /// Starts none yet. `sources` must outlive this.
   explicit StartedSources(std::span<const Source> sources) : sources_(sources) {}
   /// Stops what is still started.
   ~StartedSources() { stop(twins::StopReason::kInterrupted); }

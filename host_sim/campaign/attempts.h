@@ -1,5 +1,5 @@
 #pragma once
-// Flights that were begun: which case, by whom, and whether it was seen to be killed.
+// Flights that were started: the case, the worker, and whether it was killed.
 
 #include <cstdint>
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace vbar::campaign {
 
-/// Of one case.
+/// Flights of one case.
 struct Attempts {
   std::size_t begun = 0;
   std::size_t killed = 0;  ///< by a signal, while its worker lived

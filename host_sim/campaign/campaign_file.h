@@ -22,17 +22,17 @@ struct Sweep {
 
 using PassCriterion = mission::Limit;
 
-/// Of the whole campaign: the lower Clopper-Pearson bound, two-sided, of the pass rate.
+/// Requirement on the whole campaign: the lower Clopper-Pearson bound, two-sided, of the pass rate.
 struct Requirement {
   double pass_rate = 0.0;
   double confidence = 0.95;
 };
 
-/// Which run folders stay.
+/// Selection of the run folders that stay.
 struct Keep {
   enum class Kind { kSummary, kFailed, kWorst, kAll };
   Kind kind = Kind::kSummary;
-  std::size_t worst = 0;  ///< of each pass criterion
+  std::size_t worst = 0;  ///< number of the worst cases by each pass criterion
 };
 
 struct CampaignFile {
@@ -40,13 +40,13 @@ struct CampaignFile {
   std::string name, description;
   std::string mission;  ///< as in the file: a path relative to it, or a name of the catalogue
   std::vector<std::uint64_t> seeds;
-  std::uint64_t seed = 1;        ///< of the draws
+  std::uint64_t seed = 1;        ///< seed of the draws
   std::vector<std::string> set;  ///< "path=value", for all cases
   Keep keep;
   std::vector<double> samples_h;
   double case_time_limit_s = 0.0;        ///< 0: no limit
   double expected_case_s = 0.0;          ///< processor time, for the number of workers
-  std::int64_t retries = 2;              ///< of a case that was killed
+  std::int64_t retries = 2;              ///< further flights of a case that was killed
   std::int64_t stop_after_failures = 0;  ///< 0: never
   bool common_draws = true;              ///< the sweep points share their draws
   DrawSource::Sampling sampling = DrawSource::Sampling::kIndependent;

@@ -54,7 +54,7 @@ std::vector<Row> draws_of(const CampaignFile& campaign, const std::string& suffi
 std::vector<Case> expand(const CampaignFile& campaign) {
   const std::vector<Row> points = sweep_points(campaign.sweeps);
   const Row swept = campaign.swept_keys();
-  std::vector<std::vector<Row>> draws;  // of each sweep point, or once for all
+  std::vector<std::vector<Row>> draws;  // draws of each sweep point, or once for all
   for (std::size_t point = 0; point < (campaign.common_draws ? 1 : points.size()); ++point)
     draws.push_back(draws_of(campaign, campaign.common_draws ? "" : name_of_point(swept, points[point])));
   std::vector<Case> cases;

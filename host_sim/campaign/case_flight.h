@@ -22,7 +22,7 @@ struct Computer {
 };
 [[nodiscard]] Computer this_computer();
 
-/// What the program does with the arguments that follow its name; the result is its exit code.
+/// Executes the arguments that follow the program's name; the result is its exit code.
 using CommandLine = std::function<int(const std::vector<std::string>& arguments)>;
 
 class CaseFlight {
@@ -43,8 +43,8 @@ class CaseFlight {
   CaseFlight(const CaseFlight&) = delete;
   CaseFlight& operator=(const CaseFlight&) = delete;
 
-  /// The case's own fault, or none: a result. Killed: to be flown again. Trouble: of the computer or the campaign, not
-  /// of the case (a full disk, a program that does not start): nothing more can be flown here.
+  /// kResult: the case succeeded or failed by itself. kKilled: it is to be flown again. kTrouble: the computer or the
+  /// campaign failed, not the case (a full disk, a program that does not start); nothing more can be flown here.
   struct End {
     enum class Kind { kResult, kKilled, kTrouble };
     Kind kind = Kind::kResult;
@@ -52,7 +52,7 @@ class CaseFlight {
     std::string reason = {};
   };
 
-  /// Once the process has ended, or has flown for too long and was ended.
+  /// Returns the end once the process has ended, or has flown for too long and was ended.
   [[nodiscard]] std::optional<End> poll();
 
   [[nodiscard]] const Case& one() const { return one_; }

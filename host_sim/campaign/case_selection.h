@@ -7,7 +7,7 @@
 
 namespace vbar::campaign {
 
-/// Sorted. Throws app::Refused unless all are below `cases`.
+/// Returns the numbers, sorted. Throws app::Refused unless all are below `cases`.
 [[nodiscard]] std::vector<std::size_t> selected_cases(const std::string& text, std::size_t cases);
 
 }  // namespace vbar::campaign

@@ -1,5 +1,5 @@
 #pragma once
-// How a campaign stands: the state of each case, from the files of its workers.
+// State of each case of a campaign, from the files of its workers.
 
 #include <filesystem>
 #include <map>
@@ -16,7 +16,7 @@ struct CaseStatus {
   State state = State::kNotBegun;
   std::size_t attempts = 0;
   const Result* result = nullptr;  ///< null of a case without one
-  std::string last_end;            ///< of a killed one, if a worker saw it
+  std::string last_end;            ///< end of a killed flight, if a worker saw it
 };
 
 /// Numbers of cases.

@@ -15,7 +15,7 @@ namespace {
 using report::append_text;
 using report::append_value;
 
-/// Of all cases in the order of their first appearance, then criteria without any value.
+/// Returns the keys of all cases in the order of their first appearance, then criteria without any value.
 std::vector<std::string> number_keys(const Standing& standing) {
   std::vector<std::string> keys;
   std::set<std::string> seen;

@@ -7,8 +7,8 @@
 
 namespace vbar::campaign {
 
-/// Sorted by case; but for wall-clock times, processor times, host, processor and number of attempts the same however
-/// the campaign was flown.
+/// Returns the table sorted by case. It does not depend on how the campaign was flown, but for wall-clock times,
+/// processor times, host, processor and number of attempts.
 [[nodiscard]] std::string results_text(const Standing& standing);
 
 /// Writes results.csv. Throws std::runtime_error that names the file.

@@ -48,7 +48,7 @@ std::string checksums_of(const Folder& folder) {
   return text;
 }
 
-/// Of the list of checksums: a file and its SHA-256.
+/// Reads the list of checksums: files, each with its SHA-256.
 std::vector<std::pair<fs::path, std::string>> listed_copies(const Folder& folder) {
   std::vector<std::pair<fs::path, std::string>> listed;
   for (const std::string& line : report::read_lines(folder.checksums())) {

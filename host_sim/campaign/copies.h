@@ -10,19 +10,19 @@
 
 namespace vbar::campaign {
 
-/// What the missions of a campaign use besides the data folder: absolute paths.
+/// Files that the missions of a campaign use besides the data folder: absolute paths.
 struct UsedFiles {
   std::filesystem::path mission;
   std::set<std::filesystem::path> beside_mission;  ///< that the mission names relative to itself
-  std::set<std::filesystem::path> flight_images;   ///< of flight computers in processes of their own
+  std::set<std::filesystem::path> flight_images;   ///< images of flight computers in processes of their own
 };
 
 /// Copies all, writes bin/SHA256SUMS, which sha256sum -c reads. `mission_text` is the whole mission. Throws
 /// std::runtime_error that names a file that cannot be copied.
 void make_copies(const Folder& folder, const UsedFiles& files, const std::string& mission_text);
 
-/// Of the mission, relative to the campaign's folder. It stands at its own absolute path below bin/files, as all that
-/// it names relative to itself does.
+/// Returns the place of the mission's copy, relative to the campaign's folder. It stands at its own absolute path below
+/// bin/files, as do all files that it names relative to itself.
 [[nodiscard]] std::filesystem::path copy_of_mission(const std::filesystem::path& mission);
 
 /// Throws std::runtime_error that names the first file that is missing or differs.

@@ -13,7 +13,7 @@
 namespace vbar::campaign {
 
 struct Dispersion {
-  std::vector<std::string> keys;  ///< of the mission; more than one if they are correlated
+  std::vector<std::string> keys;  ///< keys of the mission; more than one if they are correlated
   std::size_t uniforms = 1;       ///< numbers that each key takes
   /// The text of each key's value; `u` holds the numbers of the keys in order.
   std::function<std::vector<std::string>(std::span<const double> u)> values;

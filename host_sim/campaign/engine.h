@@ -1,6 +1,6 @@
 #pragma once
-// Where the workers of a campaign run, but for this process: an engine submits them and reports whether any of them
-// still waits or runs. A new engine is one function and one line of the list in engine.cpp.
+// Engines that run the workers of a campaign outside this process: an engine submits them and reports whether any
+// worker still waits or runs. A new engine is one function and one line of the list in engine.cpp.
 
 #include <functional>
 #include <string>
@@ -14,10 +14,10 @@ namespace vbar::campaign {
 
 struct Submission {
   const Folder& folder;
-  std::vector<Case> cases;     ///< that are left to fly
+  std::vector<Case> cases;     ///< cases that are left to fly
   std::size_t workers = 1;     ///< each flies its share of the cases: k, k + workers, ...
   std::filesystem::path todo;  ///< the numbers of the cases, one a line
-  std::string options;         ///< slurm: of sbatch; command: the template
+  std::string options;         ///< slurm: options of sbatch; command: the template
   int jobs = 1;                ///< flights at once of each worker
 
   /// The command line of a worker; `k` is its number or the shell's name for it.
@@ -34,11 +34,11 @@ struct Engine {
   std::vector<std::string> (*jobs_of)(const Folder& folder);
 };
 
-/// Null for an unknown name.
+/// Returns null for an unknown name.
 [[nodiscard]] const Engine* find_engine(std::string_view name);
 [[nodiscard]] std::vector<std::string_view> engine_names();
 
-/// Of all engines.
+/// Lists the jobs of the campaign in all engines.
 [[nodiscard]] std::vector<std::string> jobs_of_campaign(const Folder& folder);
 
 /// Work in pieces of some five minutes, at most 500 and at most as the engine takes.

@@ -30,7 +30,7 @@ class Folder {
   [[nodiscard]] std::filesystem::path data() const { return copies() / "data"; }
   [[nodiscard]] std::filesystem::path mission_files() const { return copies() / "files"; }
   [[nodiscard]] std::filesystem::path checksums() const { return copies() / "SHA256SUMS"; }
-  /// What is left to fly, for the workers of one submission, and their output.
+  /// Returns the folder of the lists of cases for the workers of one submission, and of their output.
   [[nodiscard]] std::filesystem::path submissions() const { return root_ / "submissions"; }
 
   /// Throws app::Refused unless the folder holds a campaign.

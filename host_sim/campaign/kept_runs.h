@@ -1,5 +1,5 @@
 #pragma once
-// Which run folders of a campaign stay.
+// Selection of the run folders of a campaign that stay.
 
 #include <filesystem>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace vbar::campaign {
 
-/// At most so many failed cases keep their folders.
+/// Largest number of failed cases that keep their folders.
 inline constexpr std::size_t kMaxFailedRuns = 100;
 
 /// Whether the folder of `result` is to stay, given the results of the same worker before it: all, those that did not

@@ -5,14 +5,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "host_sim/campaign/record_file.h"
 #include "host_sim/campaign/value_text.h"
 #include "host_sim/files/sha256.h"
 #include "host_sim/report/text_file.h"
 
 namespace vbar::campaign {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr int kFormat = 1;
 constexpr std::array<std::pair<std::string_view, Keep::Kind>, 4> kKeepKinds{{{"summary", Keep::Kind::kSummary},

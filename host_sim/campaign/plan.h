@@ -14,14 +14,14 @@ namespace vbar::campaign {
 struct Plan {
   std::string name, description, mission, vbar_version, program_sha256;
   std::size_t cases = 0;
-  std::string cases_sha256;  ///< of cases.csv
+  std::string cases_sha256;  ///< hash of cases.csv
   std::vector<std::string> keys, swept;
   std::vector<PassCriterion> passes;
   std::vector<double> samples_h;
   std::optional<Requirement> require;
   bool independent = true;  ///< the draws are: false of Latin hypercube sampling
 
-  std::string mission_file;  ///< of the copy, relative to the campaign's folder
+  std::string mission_file;  ///< path of the copy, relative to the campaign's folder
   std::vector<std::string> set;
   Keep keep;
   double case_time_limit_s = 0.0, expected_case_s = 60.0;

@@ -73,8 +73,8 @@ void add_files_read(UsedFiles& used) {
   }
 }
 
-/// Loads every case; of those that differ in the seed alone, for which the mission is the same, the first and the one
-/// of the largest seed. Throws app::Refused that names the first one that cannot be flown.
+/// Loads every case; if cases differ in the seed alone, for which the mission is the same, only the first and the one
+/// with the largest seed. Throws app::Refused that names the first one that cannot be flown.
 UsedFiles load_all(const Plan& plan, const std::vector<Case>& cases, const fs::path& mission_file, bool quiet) {
   UsedFiles used;
   used.mission = mission_file;
@@ -101,7 +101,7 @@ UsedFiles load_all(const Plan& plan, const std::vector<Case>& cases, const fs::p
   return used;
 }
 
-/// A preparation that was killed leaves parts of a campaign without its plan, and is begun again.
+/// A preparation that was killed leaves parts of a campaign without its plan, and is restarted.
 void refuse_used_folder(const Folder& folder) {
   std::error_code error;
   if (!fs::exists(folder.root(), error)) return;
@@ -136,7 +136,7 @@ void prepare(const CampaignFile& campaign, const Folder& folder, const std::stri
 
   fs::create_directories(folder.root());
   const report::RunLock lock(folder.root());
-  fs::remove_all(folder.copies());  // of a preparation that was killed; a file of it may be a link
+  fs::remove_all(folder.copies());  // copies of a preparation that was killed; a file among them may be a link
   make_copies(folder, used, mission::whole_mission_text(mission));
   plan.program_sha256 = files::sha256_of_file(folder.program()).value_or("");
   for (const fs::path& inner : {folder.result_files(), folder.attempt_files(), folder.flying()})

@@ -1,6 +1,6 @@
 #pragma once
-// From a campaign file to a campaign's folder. Every case is loaded first: a campaign of which one case is refused
-// never begins.
+// Makes the folder of a campaign from a campaign file. Every case is loaded first: a campaign of which one case is
+// rejected does not start.
 
 #include <filesystem>
 #include <string>

@@ -1,5 +1,5 @@
 #pragma once
-// What a campaign as a whole has to show.
+// Requirement on a campaign as a whole.
 
 #include <cstddef>
 

@@ -13,7 +13,7 @@ struct Rerun {
   enum class Verdict { kIdentical, kDifferent, kNothingToCompare, kFailed, kInterrupted };
   Verdict verdict = Verdict::kFailed;
   std::string sentence;
-  std::filesystem::path folder = {};  ///< of the run; empty if none stays
+  std::filesystem::path folder = {};  ///< run folder; empty if none stays
 };
 
 /// `out` empty: runs/NUMBER of the campaign. Throws app::Refused for an unknown case, a folder in use or, unless it is

@@ -42,7 +42,7 @@ void add(Result&& result, AllResults& all) {
   if (!has_flown(before)) before = std::move(result);
 }
 
-using NameLines = std::map<std::size_t, std::vector<std::string>>;  // of one file, by their numbers
+using NameLines = std::map<std::size_t, std::vector<std::string>>;  // lines of one file, by their numbers
 
 Json json_of(const Result& result, std::size_t name_line) {
   Json numbers = Json::array();

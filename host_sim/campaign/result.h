@@ -1,5 +1,5 @@
 #pragma once
-// What became of a case, as the worker that flew it recorded it.
+// Result of a case, as recorded by the worker that flew it.
 
 #include <filesystem>
 #include <map>
@@ -12,22 +12,22 @@
 
 namespace vbar::campaign {
 
-/// Of a case. The first five are those of a result.
+/// State of a case. The first five are those of a result.
 enum class State { kComplete, kFailed, kOverTime, kLost, kVoid, kNotBegun, kFlying, kKilled };
 [[nodiscard]] std::string_view name_of(State state);
 
 struct Result {
-  std::size_t number = 0;  ///< of the case
+  std::size_t number = 0;  ///< number of the case
   std::string attempt;     ///< its name, which no other attempt has
   State state = State::kComplete;
-  std::string reason;   ///< of a failure, in one sentence
+  std::string reason;   ///< reason of a failure, in one sentence
   std::string verdict;  ///< on the mission of a complete case (host_sim/report/verdict.h)
   std::string host, processor;
   double wall_s = 0.0, cpu_s = 0.0;
   std::string commands_sha256, telemetry_sha256, waypoints_sha256;
-  std::string case_sha256;  ///< of the overrides that were flown (identity_of)
+  std::string case_sha256;  ///< hash of the overrides that were flown (identity_of)
   std::string folder;       ///< that was kept, relative to the campaign's; empty if none was
-  Numbers numbers;          ///< of the summary
+  Numbers numbers;          ///< numbers of the summary
 
   [[nodiscard]] bool has_same_outputs(const Result& other) const {
     return commands_sha256 == other.commands_sha256 && telemetry_sha256 == other.telemetry_sha256 &&
@@ -41,12 +41,12 @@ class ResultFile {
  public:
   /// Throws as RecordFile, here and below.
   explicit ResultFile(std::filesystem::path file) : file_(std::move(file)) {}
-  /// When it returns, the result survives a loss of power.
+  /// Appends a result, which survives a loss of power once this returns.
   void append(const Result& result);
 
  private:
   RecordFile file_;
-  std::vector<std::string> names_;  ///< of the last line of names
+  std::vector<std::string> names_;  ///< content of the last line of names
   std::size_t name_lines_ = 0;
 };
 

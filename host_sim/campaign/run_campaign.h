@@ -16,14 +16,14 @@ struct RunRequest {
   std::string engine = "local";
   std::string engine_options;  ///< slurm: of sbatch; command: the template
   int jobs = 0;                ///< flights at once; 0: local as there are processors, elsewhere 1 a worker
-  std::size_t workers = 0;     ///< of an engine that is not local; 0: by the work
+  std::size_t workers = 0;     ///< number for an engine that is not local; 0: by the work
   std::string cases;           ///< a selection; empty: all
   bool retry_failed = false;
   bool wait = true;    ///< for the workers of an engine that is not local
   bool trust = false;  ///< the program of a folder that is not this one, and what its mission names, may be used
   bool quiet = false;
   std::function<bool()> stop_requested;
-  CommandLine command_line = {};  ///< of WorkerOptions
+  CommandLine command_line = {};  ///< as in WorkerOptions
 };
 
 /// The exit code: kDone if every case has its result and the requirement is met, kFailed if it is not met, cases were

@@ -1,5 +1,5 @@
 #pragma once
-// How a campaign stands, for a reader.
+// Status of a campaign, for a reader.
 
 #include <string>
 #include <vector>

@@ -10,7 +10,7 @@
 
 namespace vbar::campaign {
 
-/// In the order of the file, without what is null. Elements of arrays stand by what identifies them:
+/// Numbers in the order of the file, without those that are null. Elements of arrays stand by what identifies them:
 /// waypoints.10.navigation_error_m, samples.39.5h.nees, sources.servicer/gnss.epochs. Means and deviations have their
 /// unit last: navigation_error_mean_m. Wall-clock times and the provenance are left out.
 using Numbers = std::vector<std::pair<std::string, double>>;

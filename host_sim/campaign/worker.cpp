@@ -39,7 +39,7 @@ Worker::Worker(const Folder& folder, const Plan& plan, WorkerOptions options)
       results_(file_of(folder.result_files(), options_.name)) {
   check_copies(folder);
   flies_in_copies_ = options_.command_line && flies_as_the_copy(folder);
-  ::setenv("VBAR_DATA", fs::absolute(folder.data()).c_str(), 1);  // of the flights
+  ::setenv("VBAR_DATA", fs::absolute(folder.data()).c_str(), 1);  // data of the flights
   for (const auto& [number, attempts] : read_attempts(folder.attempt_files()).of_case) kills_[number] = attempts.killed;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Flies cases, several at once, each in a process of its own, and records what became of each. Both engines end here:
+// Flies cases, several at once, each in a process of its own, and records their results. Both engines end here:
 // the local one with as many flights at once as there are processors, a task of a job array with its share of the
 // cases.
 
@@ -15,11 +15,13 @@
 namespace vbar::campaign {
 
 struct WorkerOptions {
-  std::string name;  ///< of its files, which no other worker ever has
+  std::string name;  ///< name of its files, which no other worker ever has
   int jobs = 1;      ///< flights at once
   std::function<bool()> stop_requested;
-  CommandLine command_line = {};  ///< of this program, for flights in copies of this process where that is the same
-  /// After each result and at least once a second: results of this worker so far, and flights under way.
+  /// Command line of this program, for flights in copies of this process where that is the same.
+  CommandLine command_line = {};
+  /// Is called after each result and at least once a second with the results of this worker so far and its flights
+  /// under way.
   std::function<void(const std::vector<Result>& results, std::size_t flying)> progress = {};
 };
 
@@ -45,10 +47,10 @@ class Worker {
   const Folder& folder_;
   const Plan& plan_;
   WorkerOptions options_;
-  bool flies_in_copies_ = false;  ///< of this process
+  bool flies_in_copies_ = false;  ///< flights are copies of this process
   RecordFile attempts_;
   ResultFile results_;
-  std::map<std::size_t, std::size_t> kills_;  ///< of each case, by earlier workers too
+  std::map<std::size_t, std::size_t> kills_;  ///< number for each case, by earlier workers too
   std::deque<Case> waiting_;
   std::vector<std::unique_ptr<CaseFlight>> flights_;
   std::vector<Result> flown_;

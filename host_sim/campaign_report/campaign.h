@@ -18,7 +18,7 @@ struct Limit {
   std::optional<double> max, min;
 };
 
-/// What the campaign as a whole must show.
+/// Requirement on the campaign as a whole.
 struct Requirement {
   double pass_rate_min = 0.0, confidence = 0.0;  ///< 0 to 1, exclusive
 };
@@ -28,7 +28,7 @@ struct Case {
   std::string seed;
   std::vector<std::string> inputs;  ///< values of the swept and dispersed keys, in the order of Campaign::keys
   State state = State::kNotBegun;
-  std::optional<bool> passed;  ///< of complete cases always
+  std::optional<bool> passed;  ///< never empty for a complete case
   std::string failed_limits, reason, host, processor, folder;
   std::string verdict;  ///< on the mission of a complete case; empty in results of an older version
   std::uint64_t attempts = 0;
@@ -51,7 +51,7 @@ struct Figure {
 struct Campaign {
   std::string name, description, mission, vbar_version, program_sha256;
   std::vector<std::string> keys;   ///< swept and dispersed keys of the mission
-  std::vector<std::string> swept;  ///< those of them that are swept
+  std::vector<std::string> swept;  ///< those keys that are swept
   std::vector<Limit> limits;       ///< one for each key
   std::vector<double> samples_h;
   std::optional<Requirement> requirement;
@@ -59,7 +59,7 @@ struct Campaign {
   std::vector<Case> cases;     ///< by number
   std::vector<Figure> figures;
 
-  /// Null if no case has it.
+  /// Returns null if no case has the figure.
   [[nodiscard]] const Figure* figure(std::string_view key) const;
 };
 

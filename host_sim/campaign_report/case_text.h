@@ -23,7 +23,7 @@ namespace vbar::campaign_report {
 /// The command that flies a case again.
 [[nodiscard]] std::string rerun_command(const Content& content, const Case& one);
 
-/// Keys without what they need not have to be told apart: "servicer.mass_kg", "target.mass_kg", "loss_probability".
+/// Shortens keys to what distinguishes them: "servicer.mass_kg", "target.mass_kg", "loss_probability".
 [[nodiscard]] std::vector<std::string> short_names(const std::vector<std::string>& keys);
 
 /// "servicer.mass_kg = 153.41 kg; ...": swept and dispersed values, shortened.

@@ -8,7 +8,7 @@
 
 namespace vbar::campaign_report {
 
-/// Both of at least one value, sorted.
+/// Both plots are of at least one value, sorted.
 [[nodiscard]] report::Plot histogram(const Quantity& quantity, const std::vector<double>& sorted);
 [[nodiscard]] report::Plot distribution_function(const Quantity& quantity, const std::vector<double>& sorted);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Which swept and dispersed quantities the figures of the cases go with.
+// Dependence of the figures of the cases on the swept and dispersed quantities.
 
 #include <string>
 #include <vector>
@@ -16,7 +16,7 @@ struct Driver {
   std::vector<double> values;  ///< in the order of Campaign::cases
 };
 
-/// Those that are numbers in all cases and not constant; `others` gets the names of the rest.
+/// Returns the quantities that are numbers in all cases and not constant; `others` gets the names of the rest.
 [[nodiscard]] std::vector<Driver> drivers(const Campaign& campaign, std::vector<std::string>& others);
 
 /// A figure that may depend on them. "not passed" is 1 of every judged case that has not passed, failed ones included.
@@ -37,7 +37,7 @@ struct Dependence {
   [[nodiscard]] bool is_significant() const { return adjusted_p < 0.05; }
 };
 
-/// Of every pair with a rank correlation, the strongest first.
+/// Returns every pair with a rank correlation, the strongest first.
 [[nodiscard]] std::vector<Dependence> dependences(const std::vector<Driver>& drivers,
                                                   const std::vector<Response>& responses);
 

@@ -2,7 +2,7 @@
 // Whether the errors of a filter agree with its claims: normalised squared errors (NEES of the state, NIS of the
 // innovations) of many independent cases at one time against the chi-square distribution of their sum (Bar-Shalom, Li
 // and Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, section 5.4). The mean over the time
-// of one case is no such test: its epochs are correlated.
+// of one case is not such a test: its epochs are correlated.
 
 #include <cstddef>
 #include <vector>

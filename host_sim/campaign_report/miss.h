@@ -18,7 +18,7 @@ struct VectorError {
   std::vector<std::array<double, 3>> errors_rtn_m;  ///< m
 };
 
-/// Those of which results.csv has the three components "<key>_r_m", "<key>_t_m", "<key>_n_m".
+/// Returns the errors for which results.csv has the three components "<key>_r_m", "<key>_t_m", "<key>_n_m".
 [[nodiscard]] std::vector<VectorError> vector_errors(const Campaign& campaign);
 
 /// A plane of RTN by its axes, 0 to 2.
@@ -33,10 +33,10 @@ struct PlaneMiss {
   Percentile cep_m, r95_m;          ///< radii that half of the cases, 95 % of them, keep to
   std::array<double, 2> mean_m{};   ///< bias
   std::array<double, 2> sigma_m{};  ///< semi-axes of the ellipse of the sample covariance, the larger first
-  double angle_rad = 0.0;           ///< of the larger semi-axis, from the plane's first axis to its second
+  double angle_rad = 0.0;           ///< angle of the larger semi-axis, from the plane's first axis to its second
 };
 
-/// Of at least two cases.
+/// Returns the figures of at least two cases.
 [[nodiscard]] PlaneMiss miss_in(const Plane& plane, const VectorError& error, double confidence);
 
 }  // namespace vbar::campaign_report

@@ -27,7 +27,7 @@ struct Percentile {
   std::optional<double> lower, upper;
 };
 
-/// Of independent values, sorted.
+/// Returns the percentile of independent, sorted values with its bounds.
 [[nodiscard]] Percentile percentile(const std::vector<double>& sorted, double share, double confidence);
 
 }  // namespace vbar::campaign_report

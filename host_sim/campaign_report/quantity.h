@@ -18,18 +18,18 @@ struct Quantity {
   std::vector<double> values;  ///< in the order of Campaign::cases; NaN of a case that is not complete or lacks it
 
   [[nodiscard]] bool has_limit() const { return max || min; }
-  /// Positive beyond a limit; without one, the value itself: the larger, the worse.
+  /// Returns a positive number beyond a limit; without a limit the value itself: the larger, the worse.
   [[nodiscard]] double badness(double value) const;
 };
 
-/// Those with pass criteria; besides, as a campaign may have none, the errors at the last waypoint and delta-v. None
-/// before a case is complete.
+/// Returns the quantities with pass criteria and, as a campaign may have none, the errors at the last waypoint and
+/// delta-v; empty before a case is complete.
 [[nodiscard]] std::vector<Quantity> quantities(const Campaign& campaign);
 
 /// The values that there are.
 [[nodiscard]] std::vector<double> sorted_values(const Quantity& quantity);
 
-/// With its unit, which the key ends in: "waypoints.10.navigation_error_m" of 0.004 is "4.00 mm".
+/// Writes a value with its unit, in which the key ends: "waypoints.10.navigation_error_m" of 0.004 is "4.00 mm".
 [[nodiscard]] std::string value_text(std::string_view key, double value);
 
 /// "most 20.0 mm", "at least 0.5"; empty without limits.

@@ -17,14 +17,14 @@ struct RankCorrelation {
   std::size_t count = 0;
 };
 
-/// Of a rank correlation of `count` > 2 pairs.
+/// Returns the p value of a rank correlation of `count` > 2 pairs.
 [[nodiscard]] double spearman_p_value(double rho, std::size_t count);
 
 /// Fewer pairs do not support the approximation of the p value.
 inline constexpr std::size_t kMinPairs = 10;
 
-/// Of the pairs in which both values are finite; none if these are fewer than kMinPairs, or one quantity is constant.
-/// Both vectors have the same size.
+/// Returns the rank correlation of the pairs in which both values are finite; empty if these are fewer than kMinPairs,
+/// or one quantity is constant. Both vectors have the same size.
 [[nodiscard]] std::optional<RankCorrelation> spearman(const std::vector<double>& x, const std::vector<double>& y);
 
 /// p values adjusted for their number (Holm, 1979), in the same order: those below a level are significant with at most

@@ -19,7 +19,7 @@ using report::Mark;
 using report::Plot;
 using report::Point;
 
-constexpr std::size_t kMaxPoints = 6;  // of the sweeps, each judged by itself; more are judged together
+constexpr std::size_t kMaxPoints = 6;  // points of the sweeps that are judged each by itself; more are judged together
 constexpr const char* kTogether = "all points of the sweeps";
 
 struct Test {
@@ -32,7 +32,7 @@ constexpr std::array<Test, 2> kTests{Test{"nees", "NEES of the state", "ANEES"},
 
 /// Cases that are judged together, and one test's epochs of them.
 struct Judged {
-  std::string name;  ///< of the point of the sweeps
+  std::string name;  ///< name of the point of the sweeps
   const Test* test = nullptr;
   std::vector<Epoch> epochs;
 };

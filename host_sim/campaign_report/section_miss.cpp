@@ -43,7 +43,7 @@ Row row_of(const Content& content, const Plane& plane, const PlaneMiss& miss) {
           fmt::format("{}, {}", metres(miss.sigma_m[0]), metres(miss.sigma_m[1]))};
 }
 
-constexpr int kCorners = 72;  // of a circle as drawn
+constexpr int kCorners = 72;  // corners of a circle as drawn
 
 std::vector<Point> ellipse(const PlaneMiss& miss, double sigmas) {
   std::vector<Point> points;

@@ -33,7 +33,7 @@ void add_all(const Campaign& campaign, std::vector<Row>& rows) {
     rows.push_back(row_of(campaign, "all limits, if every other case were not to pass", passed, campaign.cases.size()));
 }
 
-/// Of the judged cases: one that is not complete has kept no limit.
+/// Adds a row for each limit, over the judged cases: one that is not complete has kept no limit.
 void add_limits(const Content& content, std::vector<Row>& rows) {
   if (content.campaign.limits.empty()) return;
   rows.push_back({"each limit"});

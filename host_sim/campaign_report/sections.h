@@ -9,14 +9,14 @@
 
 namespace vbar::campaign_report {
 
-/// Of all bounds on the page.
+/// Confidence of all bounds on the page.
 inline constexpr double kConfidence = 0.95;
 
-/// What the sections are made of.
+/// Content from which the sections are made.
 struct Content {
   const Campaign& campaign;
   std::vector<Quantity> quantities;
-  std::string folder_name;  ///< of the campaign
+  std::string folder_name;  ///< folder of the campaign
 };
 
 [[nodiscard]] std::string overview(const Content& content);  ///< as HTML

@@ -14,7 +14,7 @@ struct SweepPoint {
   std::vector<std::size_t> places;  ///< in Campaign::cases
 };
 
-/// In the order of their first cases; one without a sweep.
+/// Returns the points in the order of their first cases; one point without a sweep.
 [[nodiscard]] std::vector<SweepPoint> sweep_points(const Campaign& campaign);
 
 /// Cases of different points have the same seed: they share noise, and are not independent of each other.

@@ -11,7 +11,7 @@
 
 namespace vbar::check {
 
-/// False of a number that is missing or not finite.
+/// Returns false for a number that is missing or not finite.
 [[nodiscard]] bool meets(const mission::Limit& limit, const std::optional<double>& value);
 
 struct LimitResult {
@@ -21,7 +21,7 @@ struct LimitResult {
   std::string missed;  ///< if not met: a sentence that says by what
 };
 
-/// In the order of the limits. A key without a number is answered with the nearest one that has.
+/// Returns the results in the order of the limits. A key without a number is answered with the nearest one that has.
 [[nodiscard]] std::vector<LimitResult> check_limits(std::span<const mission::Limit> limits,
                                                     std::span<const std::pair<std::string, double>> numbers);
 

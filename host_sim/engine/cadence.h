@@ -1,5 +1,5 @@
 #pragma once
-// When something periodic happens, whose period changes at given times: flight steps, images.
+// Times of a periodic event whose period changes at given times: flight steps, images.
 
 #include <cstdint>
 #include <optional>

@@ -36,7 +36,7 @@ struct Lateness {
 };
 
 struct DeadlineReport {
-  std::uint64_t steps = 0;  ///< steps begun
+  std::uint64_t steps = 0;  ///< steps that have started
   Lateness step_late;
   Lateness link_late;
   Lateness woke_late;
@@ -57,7 +57,7 @@ class RunClock {
   /// be empty) returned true before.
   bool wait_until(fsw::GpsTime time, Lateness* late, const std::function<bool()>& stop_requested = {});
 
-  /// The same for the step at `time`; the lateness is recorded for the report.
+  /// Waits for the step at `time` in the same way; the lateness is recorded for the report.
   bool begin_step(fsw::GpsTime time, const std::function<bool()>& stop_requested = {});
 
   /// Records the exchange of the step: wall time from the first packet out to the last packet in, and how much of it
@@ -68,7 +68,7 @@ class RunClock {
 
  private:
   [[nodiscard]] WallClock::Span on_the_wall(fsw::Duration simulated) const;
-  /// How late an event begins.
+  /// Lateness of the start of an event.
   struct Arrival {
     bool slept = false;
     WallClock::Span late{0};

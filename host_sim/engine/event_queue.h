@@ -17,8 +17,8 @@ namespace vbar::engine {
 /// Names one scheduled event; its order is the order in which events happen.
 struct EventId {
   fsw::GpsTime time;
-  std::int32_t priority = 0;    ///< of two events at the same time the smaller number happens first
-  std::uint64_t insertion = 0;  ///< of two equals the one scheduled first happens first
+  std::int32_t priority = 0;    ///< the smaller number happens first of two events at the same time
+  std::uint64_t insertion = 0;  ///< the one scheduled first happens first of two events with the same time and priority
   auto operator<=>(const EventId&) const = default;
 };
 

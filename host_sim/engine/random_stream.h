@@ -33,7 +33,7 @@ class RandomStream {
   /// before. They share no bits with the numbers drawn in sequence.
   [[nodiscard]] std::array<double, 4> uniforms_of(std::uint64_t index) const;
 
-  /// How many numbers have been drawn in sequence; with seed and name this is the stream's whole state.
+  /// Returns how many numbers have been drawn in sequence; with seed and name this is the stream's whole state.
   [[nodiscard]] std::uint64_t position() const { return position_; }
   /// Continues as if `position` numbers had been drawn.
   void seek(std::uint64_t position) { position_ = position; }

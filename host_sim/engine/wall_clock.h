@@ -19,7 +19,7 @@ class WallClock {
 
   /// Since an origin of the clock's own; monotonic.
   virtual Span now() = 0;
-  /// When the run starts, if that has been set (by a testbed); by default at once.
+  /// Returns the start of the run, if it has been set (by a testbed); by default at once.
   virtual Span start_of_run() { return now(); }
   /// Returns at `wake` or later; at once if it has passed.
   virtual void sleep_until(Span wake) = 0;

@@ -19,7 +19,7 @@ void AidWatch::change(GpsTime time, std::int32_t aiding) {
 void AidWatch::take(GpsTime time, const fsw::packets::PacketView& packet) {
   const std::int32_t present = changes_.empty() ? 0 : changes_.back().aiding;
   if (const auto health = fsw::packets::decode<telemetry_health>(packet); health.ok()) {
-    // Of a computer that began again: its events of this step, before the health packet or after it, still hold.
+    // The computer began again: its events of this step, before the health packet or after it, still hold.
     if (health.value().step == 0 && has_stepped_) change(time, time == reported_at_ ? present & reported_ : 0);
     has_stepped_ = true;
     return;

@@ -1,5 +1,5 @@
 #pragma once
-// Which sources aided navigation and when, by the events that the flight computer sent.
+// Times during which each source aided navigation, by the events that the flight computer sent.
 
 #include <cstdint>
 #include <optional>
@@ -15,7 +15,7 @@ class AidWatch {
   /// One packet of the flight computer's answer to the step at `time`. A restarted computer aids with nothing.
   void take(fsw::GpsTime time, const fsw::packets::PacketView& packet);
 
-  /// Those that aided immediately before `time`: a sum of navigation_configuration::kUse.
+  /// Returns the sources that aided immediately before `time`: a sum of navigation_configuration::kUse.
   [[nodiscard]] std::int32_t before(fsw::GpsTime time) const;
   /// The first time from `from` on at which all of `sources` aid; empty if there is none.
   [[nodiscard]] std::optional<fsw::GpsTime> first_with(std::int32_t sources, fsw::GpsTime from) const;

@@ -169,7 +169,7 @@ void FaultLog::look_at_receiver(State& state, GpsTime time) {
   if (state.fault.kind == FaultKind::kCycleSlip) look_for_reaction(state, time);
 }
 
-/// One satellite by the commanded cycles; of all, most of them by a multiple.
+/// One satellite slips by the commanded cycles; with all satellites, most slip by a multiple.
 void FaultLog::look_for_slip(State& state, const ReceiverEpoch& epoch, GpsTime time) {
   std::set<fsw::gnss::SatelliteId> satellites;
   std::size_t as_commanded = 0;
@@ -301,7 +301,7 @@ void FaultLog::finish() {
     if (!row.effect_s || !row.end_s || *row.end_s > fsw::seconds(mission_.end_time() - mission_.epoch)) continue;
     if (row.recovered_s) {
       double& after_s = figures[row.name + ".recovered_after_s"];
-      after_s = std::max(after_s, *row.recovered_s - *row.end_s);  // of several of one name: the last one
+      after_s = std::max(after_s, *row.recovered_s - *row.end_s);  // the last of several faults of one name
     } else {
       ++not_recovered;
     }

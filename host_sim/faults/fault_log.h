@@ -1,5 +1,5 @@
 #pragma once
-// Whether faults took effect and ended, by witnesses that have no part in causing them: packets that the flight
+// Whether faults took effect and ended, by observers that have no part in causing them: packets that the flight
 // computer received and sent, and the truth.
 
 #include <array>
@@ -34,7 +34,7 @@ class FaultLog final : public app::RunObserver {
   void finish();
 
  private:
-  /// What a witness has seen of one fault.
+  /// Observed effects of one fault.
   struct State {
     const mission::Fault& fault;
     std::optional<double> effect_s;
@@ -69,10 +69,11 @@ class FaultLog final : public app::RunObserver {
   report::RunRecord& record_;
   std::vector<State> states_;
   std::map<StreamKey, Stream> streams_;
-  std::map<std::uint8_t, std::array<std::uint64_t, 2>> image_sums_;  ///< of each camera: the last one and the present
+  /// Last and present sum of each camera.
+  std::map<std::uint8_t, std::array<std::uint64_t, 2>> image_sums_;
   std::map<std::int32_t, double> commanded_dv_;
   std::map<fsw::packets::Apid, ReceiverWitness> receivers_;
-  std::map<fsw::packets::Apid, std::vector<ReceiverEpoch>> epochs_;  ///< of the present step
+  std::map<fsw::packets::Apid, std::vector<ReceiverEpoch>> epochs_;  ///< epochs of the present step
   std::optional<telemetry_gnss> carrier_phase_;                      ///< the last one
   AidWatch aids_;
   bool looks_at_receivers_ = false;  ///< decoding costs, and most faults are not theirs

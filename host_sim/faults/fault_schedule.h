@@ -1,6 +1,6 @@
 #pragma once
-// When each fault of the scenario begins: at its time, or once its event has happened. Events are those of the truth,
-// of the thruster and of what the flight computer sent; the same in every run with the same bits.
+// Start of each fault of the scenario: at its time, or once its event has happened. Events are those of the truth, the
+// thruster and the packets that the flight computer sent; they are the same in every run with the same bits.
 
 #include <string>
 #include <vector>
@@ -15,10 +15,11 @@ class FaultSchedule final : public app::RunObserver {
   /// `servicer` and `target`: names in the truth.
   FaultSchedule(std::vector<mission::Fault> faults, std::string servicer, std::string target);
 
-  /// In the order of the file. Places do not change; `begin` of one does when its event happens.
+  /// Returns the faults in the order of the file. Indices do not change; the `begin` of a fault does when its event
+  /// happens.
   [[nodiscard]] const std::vector<mission::Fault>& faults() const { return faults_; }
 
-  /// A burn that was commanded or announced begins, before it is known what becomes of it.
+  /// A burn that was commanded or announced begins; its execution is not known yet.
   void on_ignition(fsw::GpsTime time);
 
   void on_truth(const twins::TruthSnapshot& truth) override;

@@ -1,5 +1,5 @@
 #pragma once
-// What a fault concerns: packets, and sources of navigation.
+// Subject of a fault: packets, and measurement sources of navigation.
 
 #include <cstdint>
 #include <optional>

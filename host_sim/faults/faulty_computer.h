@@ -1,5 +1,5 @@
 #pragma once
-// A flight computer that is dark for a time: its packets are lost, and it takes no steps. Afterwards it continues, or
+// A flight computer that fails for a time: its packets are lost, and it takes no steps. Afterwards it continues, or
 // it is re-initialised, with or without the snapshot of its last step.
 
 #include <functional>
@@ -38,7 +38,7 @@ class FaultyComputer final : public pil::FlightComputer {
   ReportedOrbit reported_;
   std::unique_ptr<pil::FlightComputer> restarted_;
   bool must_restart_ = false;
-  std::vector<std::uint8_t> snapshot_;  ///< of the step before a reboot that keeps the state
+  std::vector<std::uint8_t> snapshot_;  ///< snapshot of the step before a reboot that keeps the state
 };
 
 /// Whether the faults contain one of the flight computer.

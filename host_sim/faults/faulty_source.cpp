@@ -45,7 +45,7 @@ struct FaultySource::LastImage {
   std::mutex mutex;
   std::vector<Packet> packets;
 
-  /// Those of an image that was taken properly.
+  /// Keeps the packets of an image that was taken properly.
   void keep(const std::vector<Packet>& taken) {
     const std::scoped_lock lock(mutex);
     packets = taken;

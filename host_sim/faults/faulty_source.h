@@ -38,7 +38,7 @@ class FaultySource final : public twins::PacketSource {
   /// The truth as this source sees it.
   [[nodiscard]] twins::TruthSnapshot seen(const twins::TruthSnapshot& truth) const;
 
-  /// What befalls the device at an instant that has come since the last measurement.
+  /// Applies the faults of the device whose instants have come since the last measurement.
   void upset_device(fsw::GpsTime time);
 
   /// The tiles of an image, shared with measurements that are pending.
@@ -46,7 +46,7 @@ class FaultySource final : public twins::PacketSource {
 
   std::unique_ptr<twins::PacketSource> source_;
   std::shared_ptr<const FaultSchedule> schedule_;
-  std::vector<const mission::Fault*> faults_;  ///< of the schedule: those of this source
+  std::vector<const mission::Fault*> faults_;  ///< faults of the schedule that concern this source
   std::vector<bool> is_upset_;                 ///< by each of them already
   std::shared_ptr<LastImage> last_image_;
 };

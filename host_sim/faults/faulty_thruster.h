@@ -9,7 +9,7 @@
 
 namespace vbar::faults {
 
-/// Numbers of impulses that nobody commanded begin here; flight software never gets there.
+/// First number of uncommanded impulses; the numbers of flight software stay below.
 inline constexpr std::int32_t kFirstUncommanded = 1'000'000'000;
 
 class FaultyThruster final : public twins::Actuator {
@@ -36,12 +36,12 @@ class UncommandedImpulses {
  public:
   explicit UncommandedImpulses(std::shared_ptr<const FaultSchedule> schedule);
 
-  /// Those of faults whose beginning has become known since the last call.
+  /// Returns the impulses of faults whose beginning has become known since the last call.
   [[nodiscard]] std::vector<UncommandedImpulse> take();
 
  private:
   std::shared_ptr<const FaultSchedule> schedule_;
-  std::vector<bool> is_taken_;  ///< of each fault
+  std::vector<bool> is_taken_;  ///< for each fault
   std::int32_t next_id_ = kFirstUncommanded;
 };
 

@@ -21,9 +21,9 @@ struct ReceiverEpoch {
   };
   fsw::GpsTime time;  ///< by the receiver's clock
   std::size_t carriers = 0;
-  std::size_t known = 0;  ///< of these, carriers that an earlier epoch had
-  std::size_t restarted =
-      0;  ///< of the known ones, carriers whose lock time is not that of the earlier epoch continued
+  std::size_t known = 0;  ///< number of carriers that an earlier epoch had
+  /// Number of known carriers whose lock time does not continue that of the earlier epoch.
+  std::size_t restarted = 0;
   /// Median over all signals of pseudorange minus the last one continued by Doppler, over c, s. Range accelerations
   /// leave less than 1e-7 s over 10 s.
   std::optional<double> clock_jump_s;
@@ -48,7 +48,7 @@ class ReceiverWitness {
     fsw::GpsTime time;
     fsw::gnss::Observation last;
     std::vector<Sample> past;            ///< in one lock, the latest last
-    std::optional<double> difference_m;  ///< of the last epoch, from the polynomial
+    std::optional<double> difference_m;  ///< difference of the last epoch from the polynomial
   };
 
   [[nodiscard]] ReceiverEpoch compare(const fsw::gnss::ObservationEpoch& epoch);

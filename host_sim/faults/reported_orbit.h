@@ -1,7 +1,7 @@
 #pragma once
-// What the ground knows of the target's orbit when a flight computer has lost its state: the relative orbit that its
-// telemetry reported last. It takes the place of the a-priori orbit among the telecommands of the start, which may be
-// older than a day.
+// Knowledge of the ground about the target's orbit when a flight computer has lost its state: the relative orbit that
+// its telemetry reported last. It takes the place of the a-priori orbit among the telecommands of the start, which may
+// be older than a day.
 
 #include <optional>
 #include <span>

@@ -16,10 +16,11 @@ struct FileRead {
   std::string sha256;
 };
 
-/// Of this process so far, each file once, in order of their paths.
+/// Returns the files that this process has read so far, each once, in order of their paths.
 [[nodiscard]] std::vector<FileRead> files_read();
 
-/// What this thread reads during its life is not recorded: of missions that are looked at, and not flown.
+/// Keeps files that this thread reads during its life from being recorded: those of missions that are inspected and not
+/// flown.
 class UnrecordedReads {
  public:
   UnrecordedReads();

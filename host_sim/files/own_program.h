@@ -9,10 +9,10 @@
 
 namespace vbar::files {
 
-/// Of this program; empty if the system does not state it.
+/// Returns the path of this program; empty if the system does not state it.
 [[nodiscard]] std::filesystem::path own_program();
 
-/// For reading the bytes of this program, also after another build took its place.
+/// Returns the path to read the bytes of this program, also after another build took its place.
 [[nodiscard]] std::filesystem::path own_program_bytes();
 
 /// "vbar_NAME" in the folder of this program; empty if there is none that can be executed, or if it is this program.

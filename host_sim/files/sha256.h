@@ -21,7 +21,7 @@ class Sha256 {
   void add(std::span<const std::uint8_t> bytes);
   void add(std::string_view bytes);
 
-  /// Of all bytes so far, 64 lower-case hexadecimal digits; more bytes may follow.
+  /// Returns the hash of all bytes so far, 64 lower-case hexadecimal digits; more bytes may follow.
   [[nodiscard]] std::string hexadecimal() const;
 
  private:
@@ -31,7 +31,7 @@ class Sha256 {
 
 [[nodiscard]] std::string sha256_of(std::string_view bytes);
 
-/// Nothing if the file cannot be read.
+/// Returns an empty value if the file cannot be read.
 [[nodiscard]] std::optional<std::string> sha256_of_file(const std::filesystem::path& file);
 
 }  // namespace vbar::files

@@ -17,17 +17,17 @@ class FormatError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Without the mark of UTF-8 that some programs write before a text.
+/// Returns the text without the mark of UTF-8 that some programs write before it.
 [[nodiscard]] std::string_view without_byte_order_mark(std::string_view text);
 
-/// Without blanks at either end.
+/// Returns the text without blanks at either end.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 
 /// The whole of `text`, blanks at either end aside, as a finite number; Fortran's exponents (1.0D-03) and a leading
 /// plus are accepted. Nothing otherwise.
 [[nodiscard]] std::optional<double> number_of(std::string_view text);
 
-/// The same for a decimal integer.
+/// Parses a decimal integer in the same way.
 [[nodiscard]] std::optional<int> integer_of(std::string_view text);
 
 /// The part of `text` at the separators; blanks about the parts stay.
@@ -43,7 +43,7 @@ class TextLines {
   bool next();
 
   [[nodiscard]] std::string_view line() const { return line_; }
-  [[nodiscard]] int number() const { return number_; }  ///< of the line, from 1
+  [[nodiscard]] int number() const { return number_; }  ///< number of the line, from 1
   [[nodiscard]] const std::string& file() const { return file_; }
   [[nodiscard]] bool is_blank() const { return trimmed(line_).empty(); }
 
@@ -55,7 +55,7 @@ class TextLines {
   [[nodiscard]] std::optional<double> number_or_blank_in(std::size_t first, std::size_t last,
                                                          std::string_view what) const;
 
-  /// The same for a number that must be there, and for an integer.
+  /// Reads a number that must be present, and an integer.
   [[nodiscard]] double number_in(std::size_t first, std::size_t last, std::string_view what) const;
   [[nodiscard]] int integer_in(std::size_t first, std::size_t last, std::string_view what) const;
 

@@ -29,7 +29,7 @@ class ChildProcess {
   ChildProcess(const std::vector<std::string>& arguments, std::vector<FileDescriptor> inherited,
                std::uint64_t memory_bytes = 0);
 
-  /// The same with a copy of this process that runs `body`, whose result is its exit status, in place of a program: the
+  /// Starts a copy of this process that runs `body`, whose result is its exit status, in place of a program: the
   /// start costs no loading of libraries. An exception that leaves `body` is printed, and the status is 127. To be
   /// called while this process has no other thread. `name` stands for the program in messages.
   ChildProcess(const std::function<int()>& body, std::string name);
@@ -41,7 +41,7 @@ class ChildProcess {
   /// Lets the processes live on that the child leaves behind when it ends by itself, as those of a shell's "&".
   void keep_processes_left_behind() { keeps_group_ = true; }
 
-  /// True once the child has ended by itself or has been ended.
+  /// Returns true once the child has ended by itself or has been ended.
   bool has_ended();
 
   /// Waits for the child to end by itself; true if it did.
@@ -51,7 +51,7 @@ class ChildProcess {
   /// is reaped.
   void terminate(std::chrono::milliseconds patience);
 
-  /// Of a child that ended by itself; empty of one that runs or was killed by a signal.
+  /// Returns the status of a child that ended by itself; empty while it runs or if a signal killed it.
   [[nodiscard]] std::optional<int> exit_status() const;
 
   /// The signal that killed the child; empty of one that runs or ended by itself.

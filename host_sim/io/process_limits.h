@@ -1,5 +1,5 @@
 #pragma once
-// What a program of the user's own may take of the computer, and that nothing of it is left.
+// Limits of memory and processes for a program of the user's own, and the removal of what it leaves behind.
 
 #include <cstdint>
 
@@ -10,7 +10,7 @@ namespace vbar::io {
 
 inline constexpr std::uint64_t kBytesPerGib = std::uint64_t{1} << 30;
 
-/// Of a flight software, a sensor or a truth, unless the mission states another.
+/// Memory of a flight software, a sensor or a truth, unless the mission states another.
 inline constexpr std::uint64_t kDefaultMemoryBytes = 8 * kBytesPerGib;
 
 /// Limits the memory of this process and of those that it starts to `bytes` more than this one has now: an allocation

@@ -20,7 +20,7 @@ class SerialLine {
   SerialLine(const SerialLine&) = delete;
   SerialLine& operator=(const SerialLine&) = delete;
 
-  /// Once what was written has left at the old rate. Throws ChannelError.
+  /// Changes the rate once what was written has left at the old rate. Throws ChannelError.
   void set_baud(unsigned baud);
   [[nodiscard]] unsigned baud() const { return baud_; }
 

@@ -13,7 +13,7 @@ class SharedLibrary {
   /// (Debian package PACKAGE)".
   SharedLibrary(const std::string& file, const std::string& purpose, const std::string& package);
 
-  /// Of the library's C interface: `function` becomes the function `name`. Throws as the constructor does.
+  /// Sets `function` to the function `name` of the library's C interface. Throws as the constructor does.
   template <class Function>
   void find(const char* name, Function*& function) const {
     function = reinterpret_cast<Function*>(address_of(name));

@@ -13,7 +13,8 @@ class TerminalQueue {
   /// `device`: a serial device or pseudo-terminal. Empty: one that is always empty, as is one that cannot be opened.
   explicit TerminalQueue(std::string device) : device_(std::move(device)) {}
 
-  /// False while bytes wait to be read. A terminal that was hung up is empty, and is opened again the next time.
+  /// Returns false while bytes wait to be read. A terminal that was hung up is empty, and is opened again the next
+  /// time.
   [[nodiscard]] bool is_empty();
 
  private:

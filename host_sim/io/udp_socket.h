@@ -17,7 +17,7 @@ class UdpSocket {
   /// `local_port` 0: any free one. The socket is bound to the loopback interface if the peer is there, otherwise to all
   /// interfaces. Datagrams of more than `max_bytes` are delivered with one byte more than that. Throws ChannelError.
   UdpSocket(const std::string& peer_address, std::uint16_t peer_port, std::uint16_t local_port, std::size_t max_bytes);
-  /// On a socket that is bound already.
+  /// Uses a socket that is bound already.
   UdpSocket(FileDescriptor bound_socket, const std::string& peer_address, std::uint16_t peer_port,
             std::size_t max_bytes);
   ~UdpSocket();

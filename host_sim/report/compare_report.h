@@ -9,7 +9,7 @@
 
 namespace vbar::report {
 
-/// At least one run.
+/// Returns the page of at least one run.
 [[nodiscard]] std::string html_comparison(std::span<const ComparedRun> runs);
 
 /// Throws std::runtime_error that names the file.

@@ -40,16 +40,16 @@ ComparisonRow row_of(std::string name, Runs runs, const Papers& papers, const Ce
 }
 
 /// Lengths of navigation by carrier phases are millimetres.
-struct Unit {
+struct LengthUnit {
   double scale = 1.0;
   const char* name = "m";
   int decimals = 4;
 };
 constexpr int kVelocityDecimals = 4;
-Unit navigation_unit(Runs runs) {
+LengthUnit navigation_unit(Runs runs) {
   const bool has_fix =
       std::ranges::any_of(runs, [](const ComparedRun& run) { return run.record.summary.first_fix_s.has_value(); });
-  return has_fix ? Unit{1e3, "mm", 3} : Unit{};
+  return has_fix ? LengthUnit{1e3, "mm", 3} : LengthUnit{};
 }
 
 /// Index and time of every waypoint that any run reached.
@@ -111,7 +111,7 @@ std::optional<double> largest_difference(const RunRecord& a, const RunRecord& b)
   return largest;
 }
 
-std::string mean_and_deviation(const std::optional<MeanAndDeviation>& value, const Unit& unit) {
+std::string mean_and_deviation(const std::optional<MeanAndDeviation>& value, const LengthUnit& unit) {
   return plus_minus(value, unit.decimals, unit.scale);
 }
 
@@ -157,7 +157,7 @@ void append_attitude(std::vector<ComparisonRow>& rows, Runs runs, const Papers& 
 }
 
 void append_totals(std::vector<ComparisonRow>& rows, Runs runs, const Papers& papers) {
-  const Unit unit = navigation_unit(runs);
+  const LengthUnit unit = navigation_unit(runs);
   rows.push_back({"whole run", {}});
   rows.push_back(row_of(
       fmt::format("  delta-v, {}/s", unit.name), runs, papers,
@@ -332,7 +332,7 @@ std::vector<ComparisonRow> comparison_rows(Runs runs) {
   if (runs.empty()) return rows;
   using AtWaypoint = PaperColumn::AtWaypoint;
   const Papers papers = paper_columns(runs);
-  const Unit unit = navigation_unit(runs);
+  const LengthUnit unit = navigation_unit(runs);
   append_setting(rows, runs);
   append_by_waypoint(
       rows, runs, papers,

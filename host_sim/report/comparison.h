@@ -17,7 +17,7 @@ struct ComparedRun {
   RunRecord record;
 };
 
-/// Both runs gave the same maneuver commands and the same telemetry, bit for bit.
+/// Returns whether both runs gave the same maneuver commands and the same telemetry, bit for bit.
 [[nodiscard]] bool same_outputs(const Summary& a, const Summary& b);
 
 /// Both runs are of the same mission with the same seed, so that their outputs should be the same on every flight
@@ -42,7 +42,7 @@ struct ComparisonRow {
 /// The first run is what the others are held against. Waypoints that a run did not reach are dashes.
 [[nodiscard]] std::vector<ComparisonRow> comparison_rows(std::span<const ComparedRun> runs);
 
-/// For the console: aligned columns, a run each; ends in a line break.
+/// Returns the table for the console: aligned columns, a run each; ends in a line break.
 [[nodiscard]] std::string comparison_table(std::span<const ComparedRun> runs);
 
 }  // namespace vbar::report

@@ -26,7 +26,7 @@ struct Extension {
   std::vector<TableKind> (*tables)() = nullptr;
   /// Computes the figures of the module from its tables.
   void (*summarise)(const RunRecord& record, Summary& summary) = nullptr;
-  /// Those without content are left out: the run has nothing to show.
+  /// Makes the sections of the module; those without content are left out, as the run has nothing to show.
   std::vector<Section> (*sections)(const RunRecord& record) = nullptr;
   /// Messages of telemetry whose every field is in a table of the module, with the truth beside it: they have no table
   /// of their own.

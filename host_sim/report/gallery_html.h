@@ -11,7 +11,7 @@ namespace vbar::report {
 /// Shapes of marks in coordinates of the picture; the tooltip is text. Empty where a coordinate is not finite.
 struct MarkAt {
   double x = 0.0, y = 0.0;
-  const char* colour = "red";  ///< of the style sheet: red, green, blue, white
+  const char* colour = "red";  ///< class of the style sheet: red, green, blue, white
   std::string tooltip{};
 };
 [[nodiscard]] std::string box_mark(const MarkAt& at, double half_side);

@@ -15,15 +15,15 @@ struct CameraPicture {
   std::span<const std::uint16_t> dn;  ///< rows from the top; 0xFFFF is a pixel that is missing
 };
 
-/// What is black and what is white; between them asinh(softness * s) / asinh(softness) of the way s from one to the
-/// other, so that faint stars show beside bright ones (Lupton, Gunn, Szalay 1999).
+/// Levels of black and of white. The shade between them is asinh(softness * s) / asinh(softness) at the fraction s of
+/// the way from one to the other, so that faint stars show beside bright ones (Lupton, Gunn, Szalay 1999).
 struct Stretch {
   double black_dn = 0.0;
   double white_dn = 4095.0;
   double softness = 100.0;  ///< > 0
 };
 
-/// From a little above the background's noise to the brightest pixel.
+/// Returns the stretch from a little above the background's noise to the brightest pixel.
 [[nodiscard]] Stretch stretch_for(const CameraPicture& picture);
 
 /// A PNG in shades of grey; missing pixels are dark violet. Throws std::invalid_argument unless the number of pixels is

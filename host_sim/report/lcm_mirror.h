@@ -20,7 +20,7 @@ class LcmMirror {
   LcmMirror(const LcmMirror&) = delete;
   LcmMirror& operator=(const LcmMirror&) = delete;
 
-  /// Never fails a run: what the bus does not take is counted.
+  /// Publishes a packet. It never fails a run: packets that the bus does not accept are counted.
   void publish(const twins::PacketRecord& record);
 
   [[nodiscard]] std::uint64_t events_not_sent() const { return events_not_sent_; }

@@ -30,7 +30,7 @@ std::string bench_of(const Summary& summary, const std::string& testbed) {
   return text != nullptr ? *text : std::string();
 }
 
-/// Of the flight computer; empty: in the process of the simulation.
+/// Returns the name of the flight computer; empty: in the process of the simulation.
 std::string computer_name(const std::string& target) {
   constexpr std::array<std::pair<const char*, const char*>, 5> kNames{{{"in_process", ""},
                                                                        {"host_process", "process of its own"},

@@ -1,5 +1,5 @@
 #pragma once
-// How a run was made: what was in the loop.
+// Name of the loop of a run: software, processor or hardware in the loop.
 
 #include <string>
 #include <vector>

@@ -9,7 +9,7 @@
 
 namespace vbar::report {
 
-/// Those that were executed, by the time they were.
+/// Returns the executed maneuvers in the order of their execution times.
 [[nodiscard]] std::vector<ManeuverRow> executed_in_order(const RunRecord& record);
 
 /// (hours, m/s) executed since the start of the view, from its start to its end; each value holds until the next.

@@ -22,11 +22,12 @@ struct View {
   [[nodiscard]] bool holds(double time_s) const { return time_s >= start_s && time_s <= end_s; }
 };
 
-/// In order of time, without gaps. A new view begins at a waypoint that is 20 times nearer than the one the view began
-/// with; the leg that leads there still belongs to the view before. One view for a run without waypoints.
+/// Returns the views in order of time, without gaps. A new view begins at a waypoint that is 20 times nearer than the
+/// one the view began with; the leg that leads there still belongs to the view before. One view for a run without
+/// waypoints.
 [[nodiscard]] std::vector<View> mission_views(const RunRecord& record);
 
-/// The run began at this waypoint: it was not flown to.
+/// Returns whether the run began at this waypoint, which was then not flown to.
 [[nodiscard]] bool is_start(const RunRecord& record, const WaypointRow& row);
 
 /// The waypoints that the run was flown to.

@@ -15,7 +15,7 @@ struct NavigationError {
   Sextuple sigma_rtn{};  ///< as navigation claims
 };
 
-/// Of all steps that have a valid estimate and a truth, in order.
+/// Returns the errors at all steps that have a valid estimate and a truth, in order.
 [[nodiscard]] std::vector<NavigationError> navigation_errors(const RunRecord& record);
 
 /// Time since the mission's epoch of the first step whose estimate is by fixed ambiguities.

@@ -13,13 +13,13 @@ namespace vbar::report {
 [[nodiscard]] std::string fixed(double value, int decimals);
 [[nodiscard]] std::string fixed(const std::optional<double>& value, int decimals);
 
-/// About `digits` significant digits, as shortly as that can be.
+/// Writes about `digits` significant digits, as shortly as possible.
 [[nodiscard]] std::string significant(double value, int digits);
 
 /// 12,345,678.
 [[nodiscard]] std::string grouped(std::uint64_t value);
 
-/// The same for the nearest whole number; a dash for one that is not finite or negative.
+/// Returns the nearest whole number; a dash for a number that is not finite, or negative.
 [[nodiscard]] std::string grouped_nearest(double value);
 
 /// "41 h 15 min", "2 h 15 min", "12.3 s".

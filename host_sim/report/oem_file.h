@@ -16,8 +16,8 @@ namespace vbar::report {
 class OemFile {
  public:
   struct Span {
-    fsw::GpsTime start;      ///< of the first row
-    fsw::GpsTime stop;       ///< of the last row
+    fsw::GpsTime start;      ///< time of the first row
+    fsw::GpsTime stop;       ///< time of the last row
     std::size_t states = 2;  ///< how many rows there will be
     fsw::GpsTime created;    ///< when the file is made
   };

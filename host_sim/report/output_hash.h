@@ -1,5 +1,5 @@
 #pragma once
-// What makes two runs the same: SHA-256 over the bytes of all maneuver commands, and over those of all telemetry.
+// Hashes that make two runs the same: SHA-256 over the bytes of all maneuver commands, and over those of all telemetry.
 
 #include <cstdint>
 #include <span>
@@ -15,7 +15,7 @@ class OutputHash {
   /// changes the hash instead of vanishing from it. Packets to the flight software and step reports count nowhere.
   void add(std::span<const std::uint8_t> packet);
 
-  /// Of all packets so far, 64 lower-case hexadecimal digits.
+  /// Returns the hash of all packets so far, 64 lower-case hexadecimal digits.
   [[nodiscard]] std::string commands_sha256() const;
   [[nodiscard]] std::string telemetry_sha256() const;
 

@@ -15,12 +15,12 @@ struct PaperColumn {
   };
 
   std::string name;  ///< "paper, software in the loop"
-  /// Nothing for a waypoint that is not in the paper.
+  /// Returns the figures at a waypoint, empty for one that is not in the paper.
   std::function<AtWaypoint(const WaypointRow&)> at;
   std::optional<MeanAndDeviation> navigation_error_m, navigation_velocity_error_mps;
   double dv_mps = 0.0;
   int maneuvers = 0;
-  std::optional<MeanAndDeviation> attitude_error_deg = {};  ///< of the target
+  std::optional<MeanAndDeviation> attitude_error_deg = {};  ///< attitude error of the target
 };
 
 }  // namespace vbar::report

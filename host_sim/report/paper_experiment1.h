@@ -1,6 +1,6 @@
 #pragma once
-// What the paper says of its experiment 1 ("Performance metrics for Experiment #1"), software and hardware in the loop:
-// to stand beside a run that meets the same waypoints.
+// Published figures of the paper's experiment 1 ("Performance metrics for Experiment #1"), software and hardware in the
+// loop: to stand beside a run that meets the same waypoints.
 
 #include "host_sim/report/paper_table.h"
 
@@ -25,7 +25,7 @@ inline constexpr std::array<PaperWaypoint<Loops>, 7> kWaypoints{{
     {7, {0.0, -100.0, 0.0, 3.0, 0.0, 3.0}, {{3.89, 8.77}, {3.06, 4.47}}},
 }};
 
-/// Of the whole experiment.
+/// Figures of the whole experiment.
 struct Totals {
   double dv_mps;
   int maneuvers;

@@ -1,6 +1,6 @@
 #pragma once
-// What the paper says of its experiment 2 (navigation by the pose network, waypoints 8 to 10), software and hardware in
-// the loop: to stand beside a run that meets the same waypoints.
+// Published figures of the paper's experiment 2 (navigation by the pose network, waypoints 8 to 10), software and
+// hardware in the loop: to stand beside a run that meets the same waypoints.
 
 #include "host_sim/report/paper_experiment1.h"
 #include "host_sim/report/paper_table.h"
@@ -15,7 +15,7 @@ inline constexpr std::array<PaperWaypoint<Loops>, 2> kWaypoints{{
     {10, {0.0, -8.5, 1.0, 0.0, 1.0, 0.0}, {{0.0512, 0.1231}, {0.1035, 0.2450}}},
 }};
 
-/// Of the whole experiment.
+/// Figures of the whole experiment.
 struct Totals {
   MeanAndDeviation navigation_error_m, attitude_error_deg;
   double dv_mps;

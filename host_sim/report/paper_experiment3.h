@@ -1,6 +1,6 @@
 #pragma once
-// What the paper says of its experiment 3, software and hardware in the loop ("Performance metrics for Experiment #3",
-// and the text on delta-v): to stand beside a run that meets the same waypoints.
+// Published figures of the paper's experiment 3, software and hardware in the loop ("Performance metrics for Experiment
+// #3", and the text on delta-v): to stand beside a run that meets the same waypoints.
 
 #include "host_sim/report/paper_table.h"
 
@@ -20,7 +20,7 @@ inline constexpr std::array<PaperWaypoint<Loops>, 2> kWaypoints{
     {{9, {0.0, -7.0, 1.0, 0.0, 2.0, 0.0}, {{6.731e-3, 0.047e-3, 0.588}, {5.050e-3, 0.031e-3, 0.364}}},
      {10, {0.0, -8.5, 1.0, 0.0, 1.0, 0.0}, {{12.384e-3, 0.015e-3, 0.851}, {6.091e-3, 0.006e-3, 0.715}}}}};
 
-/// After the first fix; delta-v of the whole experiment.
+/// Figures after the first fix; delta-v of the whole experiment.
 struct Totals {
   MeanAndDeviation navigation_error_m, navigation_velocity_error_mps;
   double dv_mps;

@@ -41,7 +41,7 @@ template <class Figures, std::size_t size>
 /// Mean and standard deviation, a dash for none.
 [[nodiscard]] std::string plus_minus(const std::optional<MeanAndDeviation>& value, int decimals, double scale = 1.0);
 
-/// Whose figures a row of such a table holds.
+/// Names of the rows of such a table.
 inline constexpr const char* kThisRun = "this run";
 inline constexpr const char* kPaperSoftware = "paper, software in the loop";
 inline constexpr const char* kPaperHardware = "paper, hardware in the loop";

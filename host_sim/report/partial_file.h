@@ -23,7 +23,7 @@ class PartialFile {
 
   [[nodiscard]] const std::filesystem::path& path() const { return file_; }
 
-  /// Where an unfinished `file` is.
+  /// Returns the path of an unfinished `file`.
   [[nodiscard]] static std::filesystem::path part_of(const std::filesystem::path& file);
 
  private:

@@ -14,7 +14,7 @@ constexpr double kTicksResolved = 64.0;
 
 /// The least distance between ticks of a range: numbers of type double have to resolve it.
 double least_resolved(const Range& range) {
-  constexpr double kUnits = 1024.0;  // of the last place
+  constexpr double kUnits = 1024.0;  // units of the last place
   const double size = std::max(std::abs(range.low), std::abs(range.high));
   return std::max(kUnits * std::numeric_limits<double>::epsilon() * size, std::numeric_limits<double>::min());
 }

@@ -8,7 +8,7 @@
 
 namespace vbar::report {
 
-/// What the numbers of an axis measure, in SI; hours for time, arcseconds for small angles.
+/// Quantity of the numbers of an axis, in SI; hours for time, arcseconds for small angles.
 enum class Unit { kNone, kHours, kMetres, kMetresPerSecond, kRadians, kRadiansPerSecond, kSigmas, kArcseconds };
 
 /// The form in which numbers of that size are best read: 75000 m as 75 km, 0.004 m/s as 4 mm/s, angles in degrees.
@@ -37,7 +37,7 @@ struct Tick {
   std::string text;
 };
 
-/// About `count` ticks at round numbers (1, 2 or 5 times a power of ten) inside the range.
+/// Returns about `count` ticks at round numbers (1, 2 or 5 times a power of ten) inside the range.
 [[nodiscard]] std::vector<Tick> linear_ticks(const Range& range, int count);
 
 /// Ticks at powers of ten inside a range of positive numbers.

@@ -22,7 +22,7 @@ class PropagationFolder {
   /// Starts `<name>.csv` of each spacecraft, and `<name>.oem` if `oem` is given.
   void start_files(std::span<const std::string> names, const OemFile::Span* oem);
 
-  /// Of the spacecraft's place among the names.
+  /// Appends a row to the ephemeris of a spacecraft, given by its place among the names.
   void append(std::size_t spacecraft, const EphemerisRow& row);
 
   /// Gives the files their names if the propagation is complete, then writes propagation.json.
@@ -37,7 +37,7 @@ class PropagationFolder {
   std::vector<OemFile> oem_;
 };
 
-/// Where a propagation goes unless told otherwise: runs/<mission>-truth.
+/// Returns the default folder of a propagation: runs/<mission>-truth.
 [[nodiscard]] std::filesystem::path default_propagation_folder(const std::string& mission);
 
 }  // namespace vbar::report

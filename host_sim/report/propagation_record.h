@@ -1,5 +1,5 @@
 #pragma once
-// What a propagation without flight software leaves behind.
+// Record of a propagation without flight software.
 
 #include <filesystem>
 #include <optional>
@@ -34,7 +34,7 @@ struct PropagationRecord {
   bool complete = false;
   std::string incomplete_reason;
   double simulated_s = 0.0;
-  double wall_s = 0.0;  ///< of the propagation, files included
+  double wall_s = 0.0;  ///< wall time of the propagation, files included
   int threads = 1;
   std::vector<std::string> data_notes;  ///< on data that are missing, predicted or used in part
   std::vector<PropagatedSpacecraft> spacecraft;

@@ -1,5 +1,5 @@
 #pragma once
-// What a run was made of: program, mission, data, flight software, computer. It stands in summary.json from the run's
+// Origin of a run: program, mission, data, flight software, computer. It stands in summary.json from the run's
 // first moment; data files and packet log are added at the end.
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct Provenance {
   std::string vbar_version, commit, compiler, build_type;
   std::string host, started_utc, epoch_utc;
   std::vector<std::string> overrides;  ///< "path=value", as given
-  std::string mission_sha256;          ///< of mission.toml in the run folder
+  std::string mission_sha256;          ///< hash of mission.toml in the run folder
   std::string program_sha256;
   std::optional<FileDigest> flight_software;  ///< the library or image that flew; none: in the program, or on a board
   std::vector<FileDigest> testbed;            ///< program and scenario of an emulated bench
@@ -30,7 +30,7 @@ struct Provenance {
   friend bool operator==(const Provenance&, const Provenance&) = default;
 };
 
-/// Nothing if the file cannot be read.
+/// Returns an empty value if the file cannot be read.
 [[nodiscard]] std::optional<FileDigest> digest_of(const std::filesystem::path& file);
 
 }  // namespace vbar::report

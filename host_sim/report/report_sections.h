@@ -8,7 +8,7 @@
 
 namespace vbar::report {
 
-/// What was flown, by what, how fast, and whether it came to its end (section_overview.cpp).
+/// Mission, flight software, speed and end of the run (section_overview.cpp).
 [[nodiscard]] std::string overview(const RunRecord& record);
 
 /// Distance, accuracy, aiding sources and maneuvers of the whole run (section_glance.cpp).
@@ -34,10 +34,10 @@ namespace vbar::report {
 /// True attitudes and rates (section_attitude.cpp).
 [[nodiscard]] Section attitude_section(const RunRecord& record);
 
-/// What guidance did when, and how near the target may drift (section_guidance.cpp).
+/// Actions of guidance over time, and how near the target may drift (section_guidance.cpp).
 [[nodiscard]] Section guidance_section(const RunRecord& record);
 
-/// What the flight software counted: packets rejected and dropped, plans refused, faults (section_health.cpp).
+/// Counts of the flight software: packets rejected and dropped, plans rejected, faults (section_health.cpp).
 [[nodiscard]] Section health_section(const RunRecord& record);
 
 /// Cost of each flight step, link, deadlines and where the wall-clock time went (section_computer.cpp).

@@ -16,7 +16,7 @@ namespace vbar::report {
 /// The parts of a column's name, joined by underscores, and what the column means.
 struct ColumnName {
   std::string_view stem, meaning, element{}, unit{};
-  int number = -1;  ///< of an element without a name
+  int number = -1;  ///< index of an element without a name
 
   [[nodiscard]] std::string text() const {
     std::string joined(stem);

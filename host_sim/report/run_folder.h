@@ -14,8 +14,8 @@
 
 namespace vbar::report {
 
-/// Where a run goes by default: runs/<mission>-<seed>, and from the second run on runs/<mission>-<seed>.2, .3, ...: the
-/// first that does not exist.
+/// Returns the default folder of a run: runs/<mission>-<seed>, and from the second run on runs/<mission>-<seed>.2, .3,
+/// ...: the first that does not exist.
 [[nodiscard]] std::filesystem::path default_run_folder(const std::string& mission, std::uint64_t seed);
 
 [[nodiscard]] std::filesystem::path summary_file(const std::filesystem::path& run_folder);
@@ -28,7 +28,7 @@ namespace vbar::report {
 
 class RunFolder {
  public:
-  /// What becomes of a run that the folder already holds.
+  /// Treatment of a run that the folder already holds.
   enum class Existing { kReplace, kRefuse };
 
   /// Makes the folder, locks it while this object lives, and writes a summary that says the run is under way. The files
@@ -41,7 +41,7 @@ class RunFolder {
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
   [[nodiscard]] std::filesystem::path packet_log() const { return packet_log_file(folder_); }
 
-  /// From now on no table and no picture is written: summary.json alone remains of the run.
+  /// Ends the writing of tables and pictures: summary.json alone remains of the run.
   void leave_out_tables() { with_tables_ = false; }
 
   /// Writes what has been added to the tables since the last call, so that a killed run leaves them. Throws
@@ -52,8 +52,8 @@ class RunFolder {
   /// says incomplete.
   void finish(const RunRecord& record);
 
-  /// After finish() threw: a summary that says why the record is incomplete, in the room that was kept for it where the
-  /// disk is full; without room the one that says that the run was killed stays.
+  /// Writes, after finish() threw, a summary that says why the record is incomplete, in the space that was reserved for
+  /// it where the disk is full. Without space the summary that says that the run was killed stays.
   void give_up(Summary summary, const std::string& reason) const;
 
  private:

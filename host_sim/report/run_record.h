@@ -1,5 +1,5 @@
 #pragma once
-// What a run leaves behind, as rows: filled while the mission flies, written to the run folder, read back for the
+// Record of a run as rows: filled while the mission flies, written to the run folder, read back for the
 // report. SI units; frames in the names; ROE are mean, times the reference semi-major axis. A row about a message of
 // telemetry is that message (fsw/packets/vbar.lcm) with the truth beside it.
 
@@ -49,10 +49,10 @@ struct AttitudeRow {
   double time_s = 0.0;
   std::string spacecraft;
   Quadruple q_body_eci{1.0, 0.0, 0.0, 0.0};  ///< w, x, y, z: turns ECI components into body components
-  Triple rate_body_radps{};                  ///< of the body with respect to ECI, in body axes
+  Triple rate_body_radps{};                  ///< angular rate of the body with respect to ECI, in body axes
 };
 
-/// What the flight software said of itself at a step (estimate.csv).
+/// Report of the flight software on itself at a step (estimate.csv).
 struct EstimateRow {
   double time_s = 0.0;
   std::int64_t step = 0;
@@ -75,10 +75,10 @@ struct GalleryImage {
   std::int32_t image = 0;
   std::string caption;
   int origin_x_px = 0, origin_y_px = 0, width_px = 0, height_px = 0;  ///< at the picture's upper left corner, 1:1
-  double target_radius_px = 0.0;                                      ///< of a circle about the target
+  double target_radius_px = 0.0;                                      ///< radius of a circle about the target
   int crop_left = 0, crop_side = 0;  ///< in the picture: where the crop of the pose network is; side 0: no crop
   std::vector<std::uint8_t> png;     ///< the file's bytes
-  /// Of an image of a testbed: the image that the digital twin makes of the same exposure (gallery/<image>_twin.png),
+  /// For an image of a testbed: the image that the digital twin makes of the same exposure (gallery/<image>_twin.png),
   /// the testbed's image less that one (gallery/<image>_difference.png), and how they differ; empty of other images.
   std::string difference = {};
   std::vector<std::uint8_t> twin_png = {}, difference_png = {};
@@ -115,8 +115,8 @@ struct WaypointRow {
 /// A message of telemetry as it came (<message>.csv).
 template <class Message>
 struct TelemetryRow {
-  double time_s = 0.0;       ///< of the packet, since the mission's epoch
-  double step_time_s = 0.0;  ///< of the step that it came with
+  double time_s = 0.0;       ///< time of the packet, since the mission's epoch
+  double step_time_s = 0.0;  ///< time of the step that it came with
   Message message{};
 };
 
@@ -130,7 +130,7 @@ using TelemetryTable = std::conditional_t<fsw::packets::is_telemetry(fsw::packet
 using TelemetryTables = decltype(std::tuple_cat(std::tuple<>() VBAR_FOR_EACH_MESSAGE(VBAR_MESSAGE)));
 #undef VBAR_MESSAGE
 
-/// What a source or an actuator reported of a measurement or a burn, or why it failed (notes.csv).
+/// Note of a source or an actuator on a measurement or a burn, or the reason of its failure (notes.csv).
 struct NoteRow {
   double time_s = 0.0;  ///< since the mission's epoch
   std::string source;   ///< "servicer/gnss"
@@ -139,15 +139,15 @@ struct NoteRow {
   std::string text;
 };
 
-/// A fault of the scenario, and what witnesses other than its cause have seen of it (faults.csv). Times since the
-/// mission's epoch.
+/// A fault of the scenario, and its effects as observers other than its cause have seen them (faults.csv). Times since
+/// the mission's epoch.
 struct FaultRow {
   std::string name, kind, unit;
   std::string event;               ///< with which it begins; empty: at a time
   std::optional<double> begin_s;   ///< empty: its event never happened
   std::optional<double> end_s;     ///< empty: it lasts to the end, or never began
-  std::optional<double> effect_s;  ///< first witnessed; empty: it never took effect
-  /// What it disturbed is as before again, and so is the aid of navigation by it; empty: not seen.
+  std::optional<double> effect_s;  ///< first observed; empty: it never took effect
+  /// Time at which the disturbed quantity and the aid of navigation by it are as before; empty: not seen.
   std::optional<double> recovered_s;
   int witnessed = 0;  ///< times
   std::string evidence;
@@ -182,7 +182,7 @@ class TableSet {
 };
 
 struct Extension;
-/// What modules outside this library add to record, summary and report (extension.h).
+/// Additions of modules outside this library to record, summary and report (extension.h).
 using Extensions = std::span<const Extension* const>;
 
 struct RunRecord {
@@ -198,7 +198,7 @@ struct RunRecord {
   std::vector<FaultRow> faults;
   TelemetryTables telemetry;
   Extensions extensions;
-  TableSet tables;                         ///< of the extensions
+  TableSet tables;                         ///< tables of the extensions
   std::vector<std::string> reading_notes;  ///< what reading the folder had to leave out
 
   template <class Message>

@@ -39,7 +39,7 @@ class TableWriter {
  public:
   explicit TableWriter(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /// Appends the rows that came since the last call; short tables whose rows still change are written anew. Throws
+  /// Appends the rows that came since the last call; short tables whose rows still change are rewritten. Throws
   /// std::runtime_error that names the file.
   void update(const RunRecord& record);
 

@@ -42,7 +42,7 @@ double root_of_squares(double a, double b, double c) {
   return std::sqrt(a * a + b * b + c * c);
 }
 
-/// Of the last step until the time, if its estimate is valid.
+/// Returns the error at the last step until the time, null if its estimate is invalid.
 const NavigationError* error_at(const RunRecord& record, const std::vector<NavigationError>& errors, double time_s) {
   const auto step = std::ranges::upper_bound(record.estimates, time_s + kTimeTolerance_s, {}, &EstimateRow::time_s);
   if (step == record.estimates.begin()) return nullptr;

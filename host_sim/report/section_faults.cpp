@@ -1,4 +1,4 @@
-// What failed, by the scenario and by the flight software: faults injected with their witnesses, and events of faults.
+// Faults of the scenario, with the observed effects, and fault events of the flight software.
 
 #include <fmt/format.h>
 

@@ -20,7 +20,7 @@ namespace vbar::report {
 namespace {
 
 constexpr int kWarningColour = 6;
-constexpr double kNarrowestBand = 0.003;  // of the figure's width: a fault of seconds is seen, too
+constexpr double kNarrowestBand = 0.003;  // share of the figure's width: a fault of seconds is seen, too
 
 Plot distance_plot(const RunRecord& record) {
   const View whole = whole_run(record);
@@ -55,7 +55,7 @@ std::optional<Band> band_of(int state) {
   }
 }
 
-/// By the events of its changes, in order of time.
+/// Made from the events of its changes, in order of time.
 std::vector<Band> bands_of(const std::vector<TelemetryRow<telemetry_event>>& events, std::int32_t source,
                            double end_h) {
   std::vector<Band> bands;

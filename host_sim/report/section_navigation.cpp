@@ -35,7 +35,7 @@ struct Component {
   [[nodiscard]] double bound(const NavigationError& e) const { return 3.0 * e.sigma_rtn[axis + (velocity ? 3 : 0)]; }
 };
 
-/// Of what comes once navigation has settled: before, errors are a thousand times as large.
+/// Returns the range of what comes once navigation has settled: before, errors are a thousand times as large.
 Range settled_range(const std::vector<NavigationError>& all, const View& view, double from_s, const Component& what) {
   double largest = 0.0;
   for (const NavigationError& e : all) {

@@ -1,5 +1,5 @@
 #pragma once
-// What several sections draw alike.
+// Elements of plots that several sections share.
 
 #include <algorithm>
 #include <array>
@@ -42,7 +42,7 @@ inline std::vector<Moment> waypoint_moments(const View& view) {
   return moments;
 }
 
-/// When the executed maneuvers of a view were.
+/// Returns the times of the executed maneuvers of a view.
 inline std::vector<double> maneuver_events(const RunRecord& record, const View& view) {
   std::vector<double> events;
   for (const ManeuverRow& row : record.maneuvers) {
@@ -64,12 +64,12 @@ inline Plot time_plot(const View& view, std::string title, std::string quantity,
   return plot;
 }
 
-/// What moments and events of a plot are, as HTML.
+/// Explanation of the moments and events of a plot, as HTML.
 inline constexpr const char* kPlotNote =
     "<p class=\"note\">Dashed vertical lines: waypoints. Strokes on the lower edge: maneuvers.</p>\n";
 
-/// When navigation's errors have come down to their lasting size, five minutes after the first fix; the start of a view
-/// that begins later or ends sooner. Axes of errors show what comes then.
+/// Returns the time at which the errors of navigation have settled, five minutes after the first fix; the start of a
+/// view that begins later or ends sooner. Axes of errors show the errors after it.
 inline double settled_from(const RunRecord& record, const View& view) {
   constexpr double kSettling_s = 300.0;
   const std::optional<double> fix_s = first_fix(record);

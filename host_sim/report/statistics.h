@@ -11,7 +11,7 @@
 
 namespace vbar::report {
 
-/// Of at least one value.
+/// Returns mean and standard deviation of at least one value.
 [[nodiscard]] inline MeanAndDeviation statistics(const std::vector<double>& values) {
   double sum = 0.0, squares = 0.0;
   for (const double v : values) sum += v;
@@ -20,7 +20,7 @@ namespace vbar::report {
   return {mean, std::sqrt(squares / static_cast<double>(values.size()))};
 }
 
-/// None of no value.
+/// Returns the mean, empty if there is no value.
 [[nodiscard]] inline std::optional<double> mean_of(const std::vector<double>& values) {
   return values.empty() ? std::nullopt : std::optional(statistics(values).mean);
 }
@@ -29,7 +29,7 @@ namespace vbar::report {
   return values.empty() ? std::nullopt : std::optional(statistics(values));
 }
 
-/// Of sorted values, of which there is at least one: the least that is not below that share of them.
+/// Returns the smallest of at least one sorted value that is not below that share of them.
 [[nodiscard]] inline double quantile(const std::vector<double>& sorted, double share) {
   const auto place = static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
   return sorted[std::clamp<std::size_t>(place, 1, sorted.size()) - 1];

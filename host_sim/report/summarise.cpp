@@ -29,7 +29,7 @@ void summarise_navigation(const RunRecord& record, Summary& summary) {
     velocity_errors.push_back(magnitude(error.velocity_rtn));
   }
   summary.first_fix_s = fix_s && !record.truth.empty() ? std::optional(*fix_s - record.truth.front().time_s) : fix_s;
-  summary.navigation_nees.reset();  // of the module that navigates
+  summary.navigation_nees.reset();  // it is that of the module that navigates
   summary.navigation_error_m = statistics_of(position_errors);
   summary.navigation_velocity_error_mps = statistics_of(velocity_errors);
 }

@@ -15,7 +15,7 @@ namespace vbar::report {
 /// Gives each waypoint navigation's error at its time and the delta-v of its leg, then summarises.
 void evaluate(RunRecord& record);
 
-/// What the flight software counted that should not happen, on one line ("inbox dropped 12, faults inbox_full");
+/// Returns the counts of the flight software that are not nominal, on one line ("inbox dropped 12, faults inbox_full");
 /// empty if there was nothing.
 [[nodiscard]] std::string health_line(const telemetry_health& health);
 

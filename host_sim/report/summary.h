@@ -19,10 +19,10 @@ struct MeanAndDeviation {
   double mean = 0.0, std = 0.0;
 };
 
-/// Of the bearings to a target that is no larger than a pixel.
+/// Error of the bearings to a target that is no larger than a pixel.
 struct BearingError {
   double mean = 0.0;  ///< size
-  double std = 0.0;   ///< of each axis about the bias
+  double std = 0.0;   ///< standard deviation of each axis about the bias
   double bias = 0.0;  ///< size of the mean
 };
 
@@ -31,12 +31,12 @@ struct Sample {
   double time_h = 0.0;  ///< after the epoch
   std::optional<double> navigation_error_m = {}, navigation_error_r_m = {}, navigation_error_t_m = {},
                         navigation_error_n_m = {}, navigation_velocity_error_mps = {};
-  /// As navigation claims: square root of the sum of the variances, and each axis.
+  /// Uncertainty as navigation claims it: square root of the sum of the variances, and each axis.
   std::optional<double> sigma_m = {}, sigma_r_m = {}, sigma_t_m = {}, sigma_n_m = {}, sigma_velocity_mps = {};
   std::optional<double> nees = {}, nees_dimension = {}, nis = {}, nis_dimension = {};
 };
 
-/// How often a source measured, failed and, in real time, began late.
+/// Counts of the measurements of a source, its failures and, in real time, its late starts.
 struct SourceFigures {
   std::string name;  ///< "servicer/gnss"
   std::string kind;  ///< "digital", "recorded" or the name of a testbed
@@ -44,16 +44,16 @@ struct SourceFigures {
   std::string last_failure;  ///< why; all reasons are in notes.csv
   std::uint64_t late = 0;
   double latest_s = 0.0;               ///< largest lateness
-  std::uint64_t packets_rejected = 0;  ///< of impossible times or values; all reasons are in notes.csv
+  std::uint64_t packets_rejected = 0;  ///< packets of impossible times or values; all reasons are in notes.csv
 };
 
-/// What a testbed says of the run, by name with the unit: "edges_missing", "bench".
+/// Figures of a testbed on the run, by name with the unit: "edges_missing", "bench".
 using TestbedFigures = std::map<std::string, std::variant<double, std::string>>;
 
 /// Burns against the thrust that the mission states (thrust.h).
 struct Thrust {
   double max_thrust_n = 0.0, mass_kg = 0.0;  ///< facts of the mission
-  int burns = 0;                             ///< of the flight software, executed
+  int burns = 0;                             ///< executed burns of the flight software
   int burns_too_long = 0;                    ///< would last longer than the time to the next one
   double longest_burn_s = 0.0, longest_burn_at_h = 0.0;
 };
@@ -63,7 +63,7 @@ struct Thrust {
 struct FlightOutput {
   std::uint64_t steps = 0;
   std::uint64_t steps_failed = 0;  ///< whose function returned a status other than 0; in process only
-  std::int32_t last_status = 0;    ///< of these
+  std::int32_t last_status = 0;    ///< status of the last of these
   std::uint64_t steps_silent = 0;  ///< without any packet
   std::uint64_t packets = 0;
   std::uint64_t packets_invalid = 0;  ///< that are not whole, or not of a valid content
@@ -71,7 +71,7 @@ struct FlightOutput {
   std::uint64_t inputs_refused = 0;   ///< packets given to it whose reception returned a status other than 0
 };
 
-/// What a run is and what the tables do not hold.
+/// Facts about a run that its tables do not hold.
 struct RunFacts {
   std::string mission;
   std::uint64_t seed = 0;
@@ -83,17 +83,17 @@ struct RunFacts {
   std::string flight_computer, flight_software, camera, gnss, navigation;
   std::string target;  ///< the spacecraft that is approached
   double simulated_s = 0.0, wall_s = 0.0, speed_factor = 0.0;
-  /// Of this run's draws: the distance between the antennas' true places and those that navigation takes for true, as
-  /// of bodies with parallel axes. Navigation that takes the nominal places errs by it; one that estimates them from
-  /// the motion may do better.
+  /// Distance, by the draws of this run, between the true places of the antennas and those that navigation assumes, for
+  /// bodies with parallel axes. It is the error of navigation that assumes the nominal places; navigation that
+  /// estimates them from the motion may do better.
   std::optional<double> static_floor_m;
   std::string commands_sha256, telemetry_sha256;
   FlightOutput flight_output;
   struct Link {
     std::uint64_t bytes = 0, frames_resent = 0, frames_rejected = 0, frames_duplicated = 0, strangers_ignored = 0;
-    int baud = 0;                                        ///< of a serial line; 0: none, or as fast as it goes
-    double step_share_max = 0.0, step_share_mean = 0.0;  ///< of a step's period, that its bytes take at that rate
-    // Of a receiver that is wired to the flight computer (pil::WiredStatistics).
+    int baud = 0;                                        ///< rate of a serial line; 0: none, or as fast as it goes
+    double step_share_max = 0.0, step_share_mean = 0.0;  ///< share of a step's period that its bytes take at that rate
+    // Bytes of a receiver that is wired to the flight computer (pil::WiredStatistics).
     std::uint64_t wired_bytes = 0, wired_bytes_dropped = 0, wired_bytes_missing = 0, wired_timeouts = 0;
   } link;
   struct Deadlines {
@@ -103,7 +103,7 @@ struct RunFacts {
   std::map<std::string, TestbedFigures> testbeds;  ///< by the name of the testbed, which is its key in summary.json
   struct WallShare {
     double truth_s = 0.0, flight_s = 0.0, link_s = 0.0, other_s = 0.0;
-    // Of a digital camera, on a thread of its own: beside the others, not part of their sum.
+    // Time of a digital camera, on a thread of its own: beside the others, not part of their sum.
     double render_s = 0.0, detector_s = 0.0, packing_s = 0.0;
   } wall_share;
   std::vector<std::string> data_notes;  ///< on data that are missing, predicted or used in part
@@ -125,15 +125,15 @@ struct Summary : RunFacts {
   std::vector<Sample> samples;  ///< at the times that the mission selects
   // Angles-only navigation only.
   std::optional<BearingError> bearing_error_arcsec;
-  std::optional<MeanAndDeviation> star_attitude_error_arcsec;  ///< of the boresight
-  /// Of modules: numbers by name, for each subject ("pose") or sensor.
+  std::optional<MeanAndDeviation> star_attitude_error_arcsec;  ///< error of the boresight
+  /// Figures of modules: numbers by name, for each subject ("pose") or sensor.
   std::map<std::string, std::map<std::string, double>> sensor_figures;
   /// The flight software reported that it never navigated, and no estimate was valid: a fault of the run.
   bool never_navigated = false;
   std::optional<double> min_distance_m, min_distance_at_h;  ///< true, to the target
   double dv_mps = 0.0;
   int maneuvers = 0;
-  std::optional<Thrust> thrust;  ///< of a mission that states one
+  std::optional<Thrust> thrust;  ///< thrust of a mission that states one
   struct FlightStep {
     std::uint64_t count = 0, max = 0;
     double mean = 0.0;

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Of the keys below. A file of a newer one is refused: what it means is not known here.
+/// Version of the keys below. A file of a newer version is rejected: its meaning is unknown here.
 constexpr int kSchema = 2;
 
 template <class Some, class Type>

@@ -16,7 +16,7 @@ namespace vbar::report {
 /// what is wrong with it.
 [[nodiscard]] Summary read_summary(const std::filesystem::path& file);
 
-/// True if the file is a summary that a run left, of this version of the program or another.
+/// Returns whether the file is a summary that a run left, of this version of the program or another.
 [[nodiscard]] bool is_summary(const std::filesystem::path& file);
 
 }  // namespace vbar::report

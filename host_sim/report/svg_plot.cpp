@@ -17,13 +17,13 @@ constexpr double kTitleHeight = 22.0;
 constexpr double kMomentTextHeight = 12.0;
 constexpr double kRightMargin = 12.0;
 constexpr double kBottomMargin = 42.0;
-constexpr double kCharacterWidth = 7.2;  // of the tick font, in print
+constexpr double kCharacterWidth = 7.2;  // width in the tick font, in print
 constexpr double kEventHeight = 9.0;
 constexpr double kCurveTolerance = 0.25;  // pixels
 constexpr double kDotDistance = 1.0;      // pixels
 constexpr double kCellDistance = 7.0;     // pixels, of the centres of hexagonal cells
-constexpr std::size_t kMostDots = 600;    // of a kDensity series; more are cells
-constexpr int kShades = 5;                // of cells
+constexpr std::size_t kMostDots = 600;    // dots of a kDensity series; more are drawn as cells
+constexpr int kShades = 5;                // shades of the cells
 constexpr double kPageWidth = 1190.0;     // pixels, of a row of plots on a wide screen
 constexpr double kGap = 16.0;             // between the plots of a row
 
@@ -315,7 +315,7 @@ class Drawing {
 
   const Plot& plot_;
   Scale x_, y_;
-  double top_ = 0.0, left_ = 0.0;  // of the frame
+  double top_ = 0.0, left_ = 0.0;  // corner of the frame
   std::string out_;
   std::vector<Point> ring_texts_;
 };

@@ -17,7 +17,7 @@ enum class Mark { kLine, kBroadLine, kDashedLine, kStairs, kDots, kBroadDots, kA
 
 struct Series {
   std::string name;
-  int colour = 0;  ///< of the page's palette, 0 to 5
+  int colour = 0;  ///< index in the page's palette, 0 to 5
   Mark mark = Mark::kLine;
   std::vector<Point> points{};  ///< a point that is not finite makes a gap
 };
@@ -57,7 +57,7 @@ struct Plot {
 [[nodiscard]] std::string svg(const Plot& plot);
 
 /// The marks of all plots with their names, each once, as HTML: of named series that have something to show. Empty for
-/// fewer than `least` of them.
+/// fewer than `least` points.
 [[nodiscard]] std::string legend(const std::vector<Plot>& plots, std::size_t least = 2);
 
 /// Plots side by side below their legend, `columns` a row. Their widths are set so that text has the same size whatever

@@ -19,7 +19,7 @@
 namespace vbar::report {
 
 enum class Rows { kGrow, kChange };            ///< change: until the end of the run
-enum class Presence { kAlways, kIfNotEmpty };  ///< of the file, once the run has ended
+enum class Presence { kAlways, kIfNotEmpty };  ///< presence of the file, once the run has ended
 
 /// A column of files made by an older version: its values times `factor` plus `offset` are those of the new one. A star
 /// stands for the same part of both names.

@@ -10,7 +10,7 @@ namespace vbar::files {
 /// Throws std::runtime_error that names the file.
 [[nodiscard]] std::string read_text_file(const std::filesystem::path& file);
 
-/// Where replace_text_file writes before it renames; a kill can leave it.
+/// Returns the path that replace_text_file writes before it renames; a kill can leave it.
 [[nodiscard]] std::filesystem::path neighbour_of(const std::filesystem::path& file);
 
 /// Writes a neighbour and renames it, so that `file` never holds half of `text`. Throws std::runtime_error that names

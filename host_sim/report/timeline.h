@@ -1,5 +1,5 @@
 #pragma once
-// What was going on when: bands on rows over time, as SVG inside a page.
+// Bands on rows over time, as SVG inside a page: what happened when.
 
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@ namespace vbar::report {
 
 struct Band {
   double start_h = 0.0, end_h = 0.0;
-  int colour = 0;      ///< of the page's palette, 0 to 5; 6 warns
+  int colour = 0;      ///< index in the page's palette, 0 to 5; 6 warns
   std::string text{};  ///< written inside where it has room, and shown on pointing at it
 };
 

@@ -17,7 +17,7 @@
 
 namespace vbar::report {
 
-/// In order of severity: of several findings the last one gives the word.
+/// Outcomes in order of severity: of several findings the last one gives the word.
 enum class Outcome {
   kAchieved,
   kAchievedWithFaults,
@@ -34,8 +34,8 @@ enum class Outcome {
 struct Goal {
   int index = 0;
   double time_s = 0.0;             ///< since the mission's epoch
-  double keep_out_radius_m = 0.0;  ///< of the leg that ends here
-  double size_m = 0.0;             ///< of the relative orbit: norm of its elements times the semi-major axis
+  double keep_out_radius_m = 0.0;  ///< radius of the leg that ends here
+  double size_m = 0.0;             ///< size of the relative orbit: norm of its elements times the semi-major axis
 };
 
 /// A limit of the mission against the numbers of the summary.
@@ -44,7 +44,7 @@ struct JudgedLimit {
   std::string missed;  ///< the sentence that says by what; empty: met
 };
 
-/// What a mission asks of its run.
+/// Goals of a mission for its run.
 struct Goals {
   bool approaches = false;         ///< guidance flies the waypoint table
   bool retreats = false;           ///< a retreat is what the mission commands
@@ -69,7 +69,7 @@ struct Verdict {
 /// record; the first leg begins at the true place at the start.
 [[nodiscard]] std::vector<double> accepted_control_error_m(const RunRecord& record, const Goals& goals);
 
-/// Of a record whose summary is evaluated (summarise.h) and says whether the run is complete.
+/// Returns the verdict of a record whose summary is evaluated (summarise.h) and says whether the run is complete.
 [[nodiscard]] Verdict verdict_of(const RunRecord& record, const Goals& goals);
 
 /// "navigation lost", as terminal, summary, page and campaigns print it.
@@ -78,7 +78,7 @@ struct Verdict {
 /// One sentence on the outcome, for the reader of the word.
 [[nodiscard]] std::string_view meaning_of(Outcome outcome);
 
-/// Of a word; kIncomplete for an unknown one.
+/// Returns the outcome that a word stands for; kIncomplete for an unknown one.
 [[nodiscard]] Outcome outcome_of(std::string_view word);
 
 /// A mission that is achieved, or whose run was too short for any criterion.

@@ -10,10 +10,10 @@ namespace vbar::report {
 
 struct ExplainedWord {
   std::string word;      ///< "navigation_timeout"
-  std::string quantity;  ///< of which it is a value: "fault", "mode", "count", "verdict"
+  std::string quantity;  ///< quantity that has this value: "fault", "mode", "count", "verdict"
   std::string owner;     ///< message that defines it; empty of verdicts
   std::string meaning;   ///< and what raises it
-  std::string response;  ///< of the flight software, for faults only
+  std::string response;  ///< response of the flight software, for faults only
   std::string turn;      ///< what a user can change, or empty
 };
 
