@@ -20,7 +20,7 @@ namespace {
 
 using fsw::Vector3;
 
-constexpr const char* kBodies = "bodies";  // of the data folder
+constexpr const char* kBodies = "bodies";  // name of the folder of bodies in the data folder
 
 constexpr Range kLength_m = from_to(-1000.0, 1000.0);
 

@@ -27,7 +27,7 @@ namespace vbar::mission {
 [[nodiscard]] twins::camera::CadSource cad_source_of(const std::filesystem::path& data_directory,
                                                      const std::string& model);
 
-/// Of several models, by their names.
+/// Returns the CAD files of several models, by the names of the models.
 [[nodiscard]] std::map<std::string, twins::camera::CadSource> cad_sources_of(
     const std::filesystem::path& data_directory, std::span<const std::string> models);
 

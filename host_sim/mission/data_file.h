@@ -19,7 +19,7 @@ namespace vbar::mission {
                                               const std::filesystem::path& default_value, const Mission& mission,
                                               std::span<const std::string_view> words = {});
 
-/// The same of an array of files; empty if the key is missing.
+/// Reads an array of files as data_file() reads one; the result is empty if the key is missing.
 [[nodiscard]] std::vector<std::filesystem::path> data_files(const TableReader& section, std::string_view key,
                                                             const Mission& mission);
 
@@ -35,8 +35,8 @@ namespace vbar::mission {
 /// the places that are searched.
 void check_data_files(const Mission& mission, const std::filesystem::path& data_directory);
 
-/// The overrides with absolute paths in the place of those of the working directory: a run that is flown again from
-/// another one finds the same files.
+/// Returns the overrides with absolute paths in place of paths from the working directory, so that a repetition of the
+/// run finds the same files.
 [[nodiscard]] std::vector<std::string> with_absolute_files(std::vector<std::string> overrides, const Mission& mission);
 
 }  // namespace vbar::mission

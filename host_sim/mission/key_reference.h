@@ -17,8 +17,9 @@ struct DescribedKey {
   std::string meaning;  ///< in data/mission_keys.toml; empty: it has none there
 };
 
-/// Of all missions in `folder`, in order of tables, keys in the order of reading. A key is listed if a mission's reader
-/// asks for it. Throws MissionError if a mission, or the file of meanings, is invalid.
+/// Returns the keys of all missions in `folder`, in the order of tables, and within a table in the order of reading. A
+/// key is listed if a mission's reader asks for it. Throws MissionError if a mission, or the file of meanings, is
+/// invalid.
 [[nodiscard]] std::vector<DescribedKey> key_reference(const std::filesystem::path& folder,
                                                       const Installation& installation);
 

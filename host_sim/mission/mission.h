@@ -29,7 +29,7 @@ namespace vbar::mission {
 
 inline constexpr std::string_view kTruthModel = "model";  ///< source of the truth: vbar's truth model
 
-inline constexpr std::size_t kMaxWaypoints = 16;  ///< of one waypoint telecommand
+inline constexpr std::size_t kMaxWaypoints = 16;  ///< capacity of one waypoint telecommand
 
 /// Orbit of a spacecraft at the epoch.
 enum class ElementsKind { kOsculating, kMean };
@@ -53,7 +53,7 @@ struct OrbitByRoe {
 /// Orbit given by the file of another program, at the epoch.
 struct OrbitByFile {
   std::filesystem::path file;
-  std::string object;  ///< of the file; empty: its only one
+  std::string object;  ///< name of the object in the file; empty: the file's only object
 };
 
 using truth::SurfaceProperties;
@@ -73,7 +73,7 @@ struct FlightComputer {
   std::optional<int> baud;
   std::string address;  ///< board on UDP
   int port = 0;         ///< board on UDP
-  /// Of a step, beyond which the run fails: instructions on zynq_qemu, processor cycles on a board.
+  /// Largest cost of a step, beyond which the run fails: instructions on zynq_qemu, processor cycles on a board.
   std::int64_t step_budget = 0;
 };
 
@@ -190,7 +190,7 @@ struct Spacecraft {
   std::uint8_t number = 0;     ///< as in packet headers
   std::string body;            ///< names its file in data/bodies; may be empty
   SurfaceProperties surface;   ///< nominal
-  double mass_sigma_kg = 0.0;  ///< of its true mass
+  double mass_sigma_kg = 0.0;  ///< 1 sigma of its true mass
   std::string model;           ///< CAD file for cameras, data/models/<model>.obj; empty: invisible to cameras
   std::variant<OrbitByElements, OrbitByWaypoint, OrbitByRoe, OrbitByFile> orbit;
   std::optional<Attitude> attitude;
@@ -220,7 +220,7 @@ struct Waypoint {
   fsw::Vector6 a_roe_m =
       fsw::Vector6::Zero();  ///< mean ROE of the target with respect to the servicer, times the reference a
   Solver solver = Solver::kClosedForm;
-  std::optional<double> keep_out_radius_m;  ///< of the leg that ends here; default: that of guidance
+  std::optional<double> keep_out_radius_m;  ///< radius for the leg that ends here; default: that of guidance
 };
 
 /// Numbers as in vbar.lcm, mode_command.
@@ -243,7 +243,7 @@ struct Navigation {
   Apriori apriori = Apriori::kNone;
   /// Mean ROE times the reference semi-major axis, 1 sigma.
   fsw::Vector6 apriori_sigma_a_roe_m = fsw::Vector6::Zero();
-  double angular_acceleration_psd = 0.0;  ///< of the target, rad^2/s^3, each axis
+  double angular_acceleration_psd = 0.0;  ///< psd of the target's angular acceleration, rad^2/s^3, each axis
 };
 
 /// Live packets on an LCM bus.
@@ -271,11 +271,11 @@ struct Mission {
   std::filesystem::path file;
   std::string name;
   std::string description;
-  fsw::GpsTime epoch;      ///< of the orbital elements and of waypoint times
+  fsw::GpsTime epoch;      ///< reference of orbital elements and waypoint times
   fsw::Duration start;     ///< first step, after the epoch
   fsw::Duration duration;  ///< from the first step to the end of the run
   engine::Cadence step{fsw::GpsTime{},
-                       fsw::duration_of_seconds(60)};  ///< of the flight software, the first at the start
+                       fsw::duration_of_seconds(60)};  ///< steps of the flight software, the first at the start
   std::uint64_t seed = 1;
   truth::TruthSettings truth;             ///< all but the data folder, which the program determines
   std::string truth_source{kTruthModel};  ///< or the name of a testbed; the model then gives the states at the start
@@ -285,7 +285,7 @@ struct Mission {
   Navigation navigation;
   std::vector<std::shared_ptr<const SharedSettings>> shared;  ///< one of each kind of sensor
   std::vector<Testbed> testbeds;
-  std::vector<PrescribedBurn> burns;  ///< of the spacecraft that flies, in order of time
+  std::vector<PrescribedBurn> burns;  ///< burns of the servicer, in order of time
   std::vector<Fault> faults;          ///< in the order of the file
   std::vector<Waypoint> waypoints;    ///< in order of time
   engine::ClockSettings clock;
@@ -294,7 +294,7 @@ struct Mission {
       board_link;  ///< the simulated link between a spacecraft's sensors or actuators and its flight computer
   LcmMirror lcm;
   Record record;
-  std::vector<Limit> limits;          ///< of vbar check, in the order of the file
+  std::vector<Limit> limits;          ///< limits that vbar check applies, in the order of the file
   std::vector<NamedFile> data_files;  ///< that the mission names
 
   [[nodiscard]] fsw::GpsTime start_time() const { return epoch + start; }

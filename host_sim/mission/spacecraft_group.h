@@ -32,7 +32,7 @@ class SpacecraftGroup {
   [[nodiscard]] double number(const TableReader& section, int member, std::string_view key, Range range,
                               std::optional<double> default_value = std::nullopt) const;
 
-  /// The same for an angle in degrees: the sum is wrapped to -180 ... 180.
+  /// Returns an angle in degrees as number() does; the sum is wrapped to -180 ... 180.
   [[nodiscard]] double angle_deg(const TableReader& section, int member, std::string_view key) const;
 
  private:

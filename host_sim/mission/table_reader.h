@@ -49,9 +49,10 @@ class TableReader {
   /// file's name.
   TableReader(const toml::table& table, std::string file);
 
-  /// To be called when all keys have been read. Throws, in this order: for a key of the table that was not
-  /// read; likewise for its inner tables; for the first number or flag of the table that was rejected (number, numbers,
-  /// integer and flag return an accepted value then, so that the remaining keys are read before the message).
+  /// Ends the reading, when all keys have been read. Throws, in this order: for a key of the table that was not read;
+  /// for such a key of its inner tables; for the first number or flag of the table that was rejected. (number, numbers,
+  /// integer and flag return an accepted value for a rejected one, so that the remaining keys are read before the
+  /// message.)
   void finish() const;
 
   /// Rejects a key that has not been read so far, without checking inner tables.
@@ -59,7 +60,7 @@ class TableReader {
 
   /// The keys that have been read, in that order.
   [[nodiscard]] std::vector<std::string> asked() const;
-  /// The same for all tables of the document that have been read, by their dotted paths.
+  /// Returns the keys that have been read of all tables of the document, by the dotted paths of the tables.
   [[nodiscard]] std::map<std::string, std::vector<AcceptedKey>> asked_of_all() const;
 
   [[nodiscard]] bool has(std::string_view key) const { return find(key) != nullptr; }
@@ -79,7 +80,7 @@ class TableReader {
   std::string text(std::string_view key, std::optional<std::string> default_value = std::nullopt) const;
   /// An array of texts of printable characters; empty if the key is missing.
   std::vector<std::string> texts(std::string_view key) const;
-  /// Letters, digits, '_' and '-' only: a name that can stand in a path.
+  /// Reads a name of letters, digits, '_' and '-' only, which can be part of a path.
   std::string name(std::string_view key, std::optional<std::string> default_value = std::nullopt) const;
   /// An array of `min_count` to `max_count` numbers.
   std::vector<double> numbers(std::string_view key, std::size_t min_count, std::size_t max_count, Range range) const;
@@ -140,12 +141,12 @@ class TableReader {
 
   /// Keeps a key that names a data file, for data_files().
   void note_data_file(std::string_view key, const std::string& text, const std::filesystem::path& file) const;
-  /// Of the whole document, in the order of reading.
+  /// Returns the data files that the whole document names, in the order of reading.
   [[nodiscard]] std::vector<NamedFile> data_files() const;
 
   /// Rejects the value of `key` (the whole table if empty) for a reason given by the caller.
   [[noreturn]] void refuse(std::string_view key, const std::string& found, const std::string& accepted) const;
-  /// As above; the value itself is reported as found.
+  /// Rejects the value of `key` as refuse() does; the value itself is reported as found.
   [[noreturn]] void refuse_value(std::string_view key, const std::string& accepted) const;
 
  private:
@@ -175,7 +176,7 @@ class TableReader {
   const toml::table* table_;
   std::string path_;
   std::string file_;
-  std::shared_ptr<Book> book_;  ///< of the whole document
+  std::shared_ptr<Book> book_;  ///< record of the whole document
 };
 
 inline constexpr std::string_view kNameRule = "a name of 1 to 64 letters, digits, '_' and '-'";

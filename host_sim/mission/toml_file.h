@@ -15,7 +15,7 @@ namespace vbar::mission {
 /// The text of a file; `kind` is the expected kind: "a mission file (TOML)".
 [[nodiscard]] std::string read_text_file(const std::filesystem::path& file, const std::string& kind);
 
-/// The same of a data file, which becomes part of the run's provenance (host_sim/files/data_stream.h).
+/// Returns the text of a data file, which becomes part of the run's provenance (host_sim/files/data_stream.h).
 [[nodiscard]] std::string read_data_text(const std::filesystem::path& file, const std::string& kind);
 
 }  // namespace vbar::mission

@@ -69,7 +69,7 @@ struct OrbitFormat {
 [[nodiscard]] std::vector<Track> read_oem(std::string_view text, const std::string& file);
 
 // CCSDS Orbit Parameter Message (502.0-B-3, section 3) in KVN, the same versions, frames and time systems: its state
-// vector. A message with maneuvers is refused; osculating elements, spacecraft parameters and covariance are skipped.
+// vector. A message with maneuvers is rejected; osculating elements, spacecraft parameters and covariance are skipped.
 [[nodiscard]] bool is_opm(std::string_view text);
 [[nodiscard]] std::vector<Track> read_opm(std::string_view text, const std::string& file);
 
@@ -84,7 +84,7 @@ struct OrbitFormat {
 /// an unknown format it names all.
 [[nodiscard]] OrbitFile read_orbits(std::string_view text, const std::string& file);
 
-/// The same of a file, which becomes part of the run's provenance. Throws std::runtime_error.
+/// Reads the tracks of a file, which becomes part of the run's provenance. Throws std::runtime_error.
 [[nodiscard]] OrbitFile load_orbits(const std::filesystem::path& file);
 
 /// The tracks of one object: that named `object`, or, if `object` is empty, the only one of the file. Throws
@@ -95,8 +95,8 @@ struct OrbitFormat {
 struct InterpolationCheck {
   InterpolationRule rule;
   double step_s = 0.0;              ///< between the states on either side
-  double bound_m = 0.0;             ///< of the position's error (interpolation.h)
-  std::optional<double> bound_mps;  ///< of the velocity's; none without velocities in the file
+  double bound_m = 0.0;             ///< bound of the position's error (error bound of the interpolation)
+  std::optional<double> bound_mps;  ///< bound of the velocity's error; none without velocities in the file
 };
 
 /// A state and the frame it is in.

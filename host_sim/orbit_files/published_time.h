@@ -22,8 +22,8 @@ struct Calendar {
 /// Nothing for a time that does not exist, or not from 1980 to 2200.
 [[nodiscard]] std::optional<fsw::GpsTime> instant_of(const Calendar& calendar, TimeSystem system);
 
-/// The same where the fields may have reached the next minute, hour or day: 60 s, 60 min, 24 h, as some programs write
-/// them. 60 s of a leap second, where it is one.
+/// Returns the instant of fields that may have reached the next minute, hour or day: 60 s, 60 min, 24 h, as some
+/// programs write them. 60 s are a leap second where there was one.
 [[nodiscard]] std::optional<fsw::GpsTime> instant_of_carried(Calendar calendar, TimeSystem system);
 
 /// CCSDS: YYYY-MM-DDThh:mm:ss or YYYY-DDDThh:mm:ss, decimals and Z behind it allowed. Nothing for another text.

@@ -13,7 +13,7 @@
 
 namespace vbar::sensors {
 
-/// Is called as things happen, in their order; overrides what it wants to see.
+/// Evaluates a sensor: called on events in their order; a class overrides the calls that it needs.
 class Evaluation {
  public:
   Evaluation() = default;
@@ -37,7 +37,7 @@ struct EvaluationContext {
   report::RunRecord& record;            ///< outlives the evaluation
 };
 
-/// An evaluation and the source whose truth it is told.
+/// Pairs an evaluation with the source whose truth it receives.
 struct NamedEvaluation {
   std::string source;  ///< "servicer/lidar"
   std::unique_ptr<Evaluation> evaluation;

@@ -31,7 +31,8 @@ struct PacketLimits {
                                                                       std::vector<fsw::packets::Apid> allowed,
                                                                       std::uint8_t unit, PacketLimits limits = {});
 
-/// The same for a kind of sensor that no testbed provides otherwise: throws std::runtime_error for such a source.
+/// Returns such a source for a kind of sensor that testbeds provide in no other form: throws std::runtime_error for
+/// another source of a testbed.
 [[nodiscard]] std::unique_ptr<twins::PacketSource> only_packets_of_testbed(const mission::Sensor& sensor,
                                                                            const SensorKind& kind,
                                                                            const MakeContext& context,

@@ -1,5 +1,5 @@
 #pragma once
-// A kind of sensor: everything that the program knows about it, registered in sensor_kinds.cpp.
+// A kind of sensor: all properties by which the program handles it, registered in sensor_kinds.cpp.
 
 #include <any>
 #include <filesystem>
@@ -93,7 +93,7 @@ struct RestoreContext {
 };
 
 struct SensorKind : mission::SensorReader {
-  /// Adds what the flight software is told about the sensor before its first step. Null: nothing.
+  /// Adds the telecommands about the sensor that the flight software receives before its first step. Null: none.
   void (*add_telecommands)(const mission::Sensor& sensor, const TelecommandContext& context,
                            Telecommands& telecommands) = nullptr;
   /// Adds the sources of the sensor's packets. Throws what a recorded log and data files throw.

@@ -39,7 +39,7 @@ struct MadeSources {
                                        const std::filesystem::path& data_directory,
                                        twins::TruthOutlook* outlook = nullptr);
 
-/// make_sources, or what a test has in its place.
+/// make_sources, or its replacement in a test.
 using MakeSources =
     std::function<MadeSources(const mission::Mission& mission, const mission::Spacecraft& servicer,
                               const std::filesystem::path& data_directory, twins::TruthOutlook* outlook)>;
@@ -60,8 +60,7 @@ void add_facts(const mission::Mission& mission, const mission::Spacecraft& servi
 /// What the kinds and the testbeds add to record, summary and report.
 [[nodiscard]] report::Extensions extensions();
 
-/// What the flight software is told before its first step, in this order: guidance, its sensors, the waypoints, the
-/// mode.
+/// Returns the telecommands before the first step, in this order: guidance, its sensors, the waypoints, the mode.
 [[nodiscard]] std::vector<twins::Packet> telecommands_of(const TelecommandContext& context);
 
 }  // namespace vbar::sensors

@@ -11,7 +11,7 @@ namespace vbar::training {
 
 struct ChosenKeypoint {
   fsw::Vector3 at_body = fsw::Vector3::Zero();  ///< m, from the origin of the body frame
-  double seen_share = 0.0;  ///< of all directions, evenly spread, from which the body does not hide it
+  double seen_share = 0.0;  ///< share of all directions, evenly spread, from which the body does not hide it
 };
 
 /// Farthest-point sampling of the vertices (Eldar et al. 1997, "The farthest point strategy for progressive image

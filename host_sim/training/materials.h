@@ -10,7 +10,7 @@
 
 namespace vbar::training {
 
-inline constexpr double kOwnFamily = 0.3;  ///< of a value, either way: what counts as near the file's
+inline constexpr double kOwnFamily = 0.3;  ///< share of a value, either way: limit of what counts as near the file's
 
 /// Grey materials for the faces, one for each of `file`'s. Training and calibration: diffuse and specular part a third
 /// to three times those of the material itself or (three in ten) of another one, exponents a fifth to five times; never

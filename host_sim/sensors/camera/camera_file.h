@@ -11,13 +11,13 @@ namespace vbar::sensors {
 
 /// A camera as files say it: pixel by pixel, and how many of them are summed.
 struct CameraFile {
-  twins::camera::CameraSettings single;  ///< of single pixels
+  twins::camera::CameraSettings single;  ///< camera of single pixels
   int binning = 1;                       ///< so many pixels each way are summed into one: 1, 2 or 4
-  /// Said for sums where binning was in force already: they stand as they are.
+  /// Settings of the sums, stated where binning was in force already: they are used unchanged.
   std::optional<double> gain_dn_per_electron;
   std::optional<twins::camera::Region> region;
 
-  /// The camera whose pixels are the sums: the one that the rest of the program knows.
+  /// Returns the camera whose pixels are the sums, which the rest of the program uses.
   [[nodiscard]] twins::camera::CameraSettings settings() const;
 };
 

@@ -18,7 +18,8 @@ struct CameraSensor : mission::SensorSettings {
   std::string camera;  ///< its file as the mission names it, which `settings` began with
   twins::camera::CameraSettings settings;
   engine::Cadence images{fsw::GpsTime{}, fsw::duration_of_seconds(60)};  ///< middles of the exposures
-  /// Of images for keypoints; those for bearings have the exposure of `settings`. The flight software commands which.
+  /// Exposure of images for keypoints; images for bearings have the exposure of `settings`. The flight software
+  /// commands which.
   double keypoint_exposure_s = 0.0;
   fsw::Duration readout;  ///< from the middle of an exposure until the image leaves the camera
   Eigen::Quaterniond q_camera_body = Eigen::Quaterniond::Identity();  ///< camera axes: z boresight, x right, y down
@@ -68,8 +69,8 @@ void add_camera_telecommands(const mission::Sensor& sensor, const TelecommandCon
 /// The camera as calibrated on the ground: without error.
 [[nodiscard]] vbar::camera_configuration camera_configuration_of(const CameraSensor& camera);
 
-/// The target of the camera as the ground knows it: keypoints of its model, inertia of its body. Throws MissionError
-/// for files that cannot be read.
+/// Returns the target of the camera as configured on the ground: keypoints of its model, inertia of its body. Throws
+/// MissionError for files that cannot be read.
 [[nodiscard]] vbar::target_model target_model_of(const mission::Mission& mission, const CameraSensor& camera,
                                                  const std::filesystem::path& data_directory);
 

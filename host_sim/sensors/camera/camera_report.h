@@ -13,7 +13,7 @@
 
 namespace vbar::sensors {
 
-/// Of angles-only navigation.
+/// Counts of the images of angles-only navigation.
 struct ImageCounts {
   int images = 0;
   int with_bearing = 0;
@@ -21,14 +21,14 @@ struct ImageCounts {
   int wrong_targets = 0;  ///< images whose choice is not the target; those without truth are not evaluated
   int without_truth = 0;
   int lit_among_objects = 0;  ///< a detected object is the target, which is in sunlight at least in part
-  int lit_not_found = 0;      ///< of them, without a bearing
+  int lit_not_found = 0;      ///< number of these without a bearing
 };
 
-/// Of navigation by the pose network.
+/// Figures of navigation by the pose network.
 struct PoseFigures {
   int images = 0;
   int with_pose = 0;                 ///< by PnP
-  int poses_over_10_deg = 0;         ///< of them, more than 10 deg off
+  int poses_over_10_deg = 0;         ///< number of these more than 10 deg off
   double keypoint_error_px = 0.0;    ///< median of those usable
   double keypoint_chi_square = 0.0;  ///< median normalised squared error of those usable; 1.39 if consistent
   /// Position error over the images of a lit target alone, m.
@@ -42,8 +42,8 @@ struct PoseFigures {
 [[nodiscard]] std::optional<ImageCounts> image_counts(const report::RunRecord& record);
 [[nodiscard]] std::optional<PoseFigures> pose_figures(const report::RunRecord& record);
 
-/// Of images and of poses, where the run has any (summarise_images.cpp): sensor_figures "images" and "pose", and the
-/// summary's own figures of attitude and bearing.
+/// Adds the figures of images and of poses, where the run has any (camera_figures.cpp): sensor_figures "images" and
+/// "pose", and the summary's own figures of attitude and bearing.
 void summarise_images(const report::RunRecord& record, report::Summary& summary);
 
 /// NEES of the orbit; NIS of the bearings or of the keypoints that the filter processed.

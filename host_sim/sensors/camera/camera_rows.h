@@ -16,14 +16,15 @@ namespace vbar::sensors {
 struct ImageRow : telemetry_image {
   ImageRow() : telemetry_image{} {}
   double time_s = 0.0;       ///< middle of the exposure, since the mission's epoch
-  double step_time_s = 0.0;  ///< of the step whose telemetry reported it
+  double step_time_s = 0.0;  ///< time of the step whose telemetry reported it
   // The truth. Errors are estimated less true; absent where the flight software gave nothing.
-  int true_object = -1;  ///< the object that is really the target; -1: none is, or nobody can tell
+  int true_object = -1;  ///< index of the object that is the target; -1: none is, or it is unknown
   std::string chosen;    ///< the spacecraft that the choice really is, "nothing" if none; empty without a choice
   std::optional<double> range_m, sunlit;
-  std::optional<double> bearing_error_x_arcsec, bearing_error_y_arcsec;            ///< against the centre of mass
-  std::optional<double> attitude_error_across_arcsec, attitude_error_roll_arcsec;  ///< of the boresight, and about it
-  std::optional<double> nees;  ///< of the osculating ROE, six degrees of freedom; of images that the filter used
+  std::optional<double> bearing_error_x_arcsec, bearing_error_y_arcsec;  ///< against the centre of mass
+  std::optional<double> attitude_error_across_arcsec,
+      attitude_error_roll_arcsec;  ///< errors of the boresight, and about it
+  std::optional<double> nees;  ///< NEES of the osculating ROE, six degrees of freedom; of images that the filter used
 };
 
 /// What the flight software took an object of an image for (objects.csv).
@@ -41,14 +42,15 @@ struct ObjectRow {
 struct PoseRow : telemetry_pose {
   PoseRow() : telemetry_pose{} {}
   double time_s = 0.0;       ///< middle of the exposure, since the mission's epoch
-  double step_time_s = 0.0;  ///< of the step whose telemetry reported it
+  double step_time_s = 0.0;  ///< time of the step whose telemetry reported it
   // The truth. Errors are estimated less true; absent where the flight software gave nothing.
   std::optional<double> range_m, sunlit;
   std::optional<double> pnp_error_x_m, pnp_error_y_m, pnp_error_z_m, pnp_error_deg;        ///< in camera axes
   std::optional<double> attitude_error_deg;                                                ///< in all
   std::optional<double> attitude_error_x_deg, attitude_error_y_deg, attitude_error_z_deg;  ///< about body axes
   std::optional<double> rate_error_radps;
-  std::optional<double> nees, attitude_nees;  ///< of osculating ROE, of turn and rate: six degrees of freedom each
+  std::optional<double> nees,
+      attitude_nees;  ///< NEES of osculating ROE, of attitude and rate: six degrees of freedom each
 };
 
 /// A keypoint of such an image (keypoints.csv).

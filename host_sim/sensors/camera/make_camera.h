@@ -24,7 +24,7 @@ namespace vbar::sensors {
     const mission::Mission& mission, const mission::Spacecraft& servicer, const mission::Sensor& sensor,
     const std::filesystem::path& data_directory);
 
-/// Where the camera is on its spacecraft, and what it can see. Throws what data files throw.
+/// Returns the place of the camera on its spacecraft, and the models that it can see. Throws what data files throw.
 [[nodiscard]] twins::camera::CameraMount mount_of(const mission::Mission& mission, const mission::Spacecraft& servicer,
                                                   const CameraSensor& camera,
                                                   const std::filesystem::path& data_directory);

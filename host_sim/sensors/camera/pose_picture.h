@@ -11,7 +11,7 @@
 
 namespace vbar::sensors {
 
-/// The crop is enlarged to this width and height, and stands right of the image.
+/// The crop is enlarged to this width and height, and is placed right of the image.
 inline constexpr int kCropPicturePx = 512;
 [[nodiscard]] inline int crop_left(int image_width) {
   constexpr int kGap = 8;

@@ -62,7 +62,7 @@ double chi_square(const KeypointRow& row) {
   return (yy * ex * ex - 2.0 * xy * ex * ey + xx * ey * ey) / (xx * yy - xy * xy);
 }
 
-/// Position errors at the steps that told of an image of a lit target.
+/// Position errors at the steps whose telemetry reported an image of a lit target.
 std::vector<double> lit_errors(const RunRecord& record) {
   std::vector<double> errors;
   auto image = record.tables.rows<PoseRow>().begin();

@@ -13,8 +13,8 @@
 
 namespace vbar::sensors {
 
-/// Of the sphere about the centre of mass of Tango, the spacecraft that cameras see here, that holds its body and
-/// antennas.
+/// Radius of the sphere about the centre of mass of Tango, the spacecraft that cameras see here, that holds its body
+/// and antennas.
 inline constexpr double kSpacecraftRadius_m = 0.73;
 
 /// A camera in orbit at the middle of an exposure.

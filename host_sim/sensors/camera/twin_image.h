@@ -18,15 +18,15 @@ namespace vbar::sensors {
 /// The pixels that the digital camera takes at this truth: the region, rows from the top.
 using TakeTwinImage = std::function<std::vector<std::uint16_t>(const twins::TruthSnapshot& truth, std::int64_t number)>;
 
-/// Of a camera of `servicer`, as the testbed that provides its images has calibrated it; empty if none does. The
-/// renderer is made with the first image. `mission`, `servicer` and `sensor` must outlive it.
+/// Returns the twin of a camera of `servicer`, as the testbed that provides its images has calibrated it; empty if no
+/// testbed does. The renderer is made with the first image. `mission`, `servicer` and `sensor` must outlive it.
 [[nodiscard]] TakeTwinImage twin_of_testbed_camera(const mission::Mission& mission, const mission::Spacecraft& servicer,
                                                    const mission::Sensor& sensor);
 
 /// Both images of one region.
 struct ImagePair {
   int width = 0, height = 0;
-  int origin_x_px = 0, origin_y_px = 0;          ///< of the region on the detector
+  int origin_x_px = 0, origin_y_px = 0;          ///< origin of the region on the detector
   std::span<const std::uint16_t> testbed, twin;  ///< 0xFFFF: a pixel that is missing
 };
 

@@ -23,8 +23,9 @@ struct SignalResidual {
   fsw::gnss::SatelliteId satellite;
   fsw::gnss::Signal signal = fsw::gnss::Signal::kGpsL1;
   Residual phase, code;
-  double phase_sigma_m = 0.0, code_sigma_m = 0.0;  ///< of the difference, as the receivers state them
-  double lock_s = 0.0;                             ///< shorter of the two receivers'
+  double phase_sigma_m = 0.0,
+         code_sigma_m = 0.0;  ///< standard deviations of the difference, as the receivers state them
+  double lock_s = 0.0;        ///< shorter of the two receivers'
 };
 
 struct ResidualEpoch {
@@ -34,10 +35,10 @@ struct ResidualEpoch {
   fsw::Vector3 baseline_correction_m = fsw::Vector3::Zero();  ///< estimated less given
 };
 
-/// Of one epoch: phases less geometry are integers, the offset of their signal (receiver clocks, the reference), and a
-/// small error of the baseline, which are estimated by least squares; code takes the same baseline. `servicer_eci`:
-/// antenna, to some metres; `baseline_eci`: between the antennas at the receivers' own instants, to a centimetre or
-/// two. Empty if there are too few phases.
+/// Returns the residuals of one epoch. Phases less geometry are integers, the offset of their signal (receiver clocks,
+/// the reference), and a small error of the baseline, which are estimated by least squares; code takes the same
+/// baseline. `servicer_eci`: antenna, to some metres; `baseline_eci`: between the antennas at the receivers' own
+/// instants, to a centimetre or two. The result is empty if there are too few phases.
 [[nodiscard]] std::optional<ResidualEpoch> residuals_of(const fsw::navigation::DifferentialEpoch& differences,
                                                         const fsw::Vector3& servicer_eci,
                                                         const fsw::Vector3& baseline_eci);

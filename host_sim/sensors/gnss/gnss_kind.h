@@ -17,7 +17,7 @@ namespace vbar::sensors {
 /// partner, or they are all there is, beside a camera of a target that does not cooperate.
 struct GnssSensor : mission::SensorSettings {
   twins::gnss::GnssReceiverSettings receiver;
-  testbeds::ReceiverLine line;  ///< of a receiver in a testbed
+  testbeds::ReceiverLine line;  ///< line of a receiver in a testbed
 };
 
 /// [navigation.carrier_phase], [constellation] and [links.crosslink].

@@ -12,7 +12,7 @@ namespace vbar::sensors {
 struct GnssRow : telemetry_gnss {
   GnssRow() : telemetry_gnss{} {}
   double time_s = 0.0;
-  std::optional<double> epoch_s;  ///< of the last measurements used, as time_s
+  std::optional<double> epoch_s;  ///< epoch of the last measurements used, as time_s
 };
 
 template <report::columns::RowOf<GnssRow> Row, class Visitor>

@@ -16,7 +16,7 @@ namespace vbar::sensors {
 struct RangeFinderSettings {
   double range_min_m = 0.5, range_max_m = 1000.0;  ///< beyond them nothing is measured
   double bias_sigma_m = 0.0, noise_sigma_m = 0.0;
-  double half_angle_rad = 0.0;                          ///< of the cone of the field of view
+  double half_angle_rad = 0.0;                          ///< half angle of the cone of the field of view
   fsw::Vector3 boresight_body = fsw::Vector3::UnitZ();  ///< unit vector
   fsw::Duration period;                                 ///< > 0
 };
