@@ -24,7 +24,7 @@ namespace vbar::truth {
 struct IntegrationStatistics {
   std::int64_t accepted_steps = 0;
   std::int64_t rejected_steps = 0;
-  std::int64_t evaluations = 0;  ///< of the right-hand side
+  std::int64_t evaluations = 0;  ///< number of evaluations of the right-hand side
 };
 
 /// One accepted step's continuous solution: a polynomial of order 4 in time, once continuously differentiable across
@@ -256,7 +256,7 @@ class Dopri5 {
   double time_ = 0.0;
   State state_ = State::Zero();
   State rate_ = State::Zero();
-  State start_state_ = State::Zero();  ///< of the last step
+  State start_state_ = State::Zero();  ///< state at the start of the last step
   State start_rate_ = State::Zero();
   double step_ = 0.0;
   double previous_error_ = kSmallestError;

@@ -16,7 +16,8 @@ namespace vbar::truth {
 std::optional<double> first_exit(const std::function<double(double)>& g, double from, double to, int samples,
                                  double resolution);
 
-/// The first change of sign of `g`, searched and located as above; a zero at `from` itself does not count.
+/// Returns the first change of sign of `g`, searched and located as by first_exit(); a zero at `from` itself does not
+/// count.
 std::optional<double> first_sign_change(const std::function<double(double)>& g, double from, double to, int samples,
                                         double resolution);
 

@@ -8,7 +8,7 @@
 
 namespace vbar::truth {
 
-/// Of a point mass at the origin; gm in m^3/s^2.
+/// Returns the acceleration by a point mass at the origin; gm in m^3/s^2.
 [[nodiscard]] fsw::Vector3 central_acceleration(double gm, const fsw::Vector3& position_eci);
 
 /// State `seconds` later under the point mass and a constant perturbation (m/s^2), by one step of the classical

@@ -19,7 +19,7 @@ namespace vbar::truth {
 /// Large constant data: loaded once, shared by the forces of all spacecraft and by all threads.
 struct ForceData {
   std::shared_ptr<const GravityField> gravity;
-  TideSystem tide_system = TideSystem::kZeroTide;  ///< of the gravity model; read only if the tides act
+  TideSystem tide_system = TideSystem::kZeroTide;  ///< tide system of the gravity model; read only if the tides act
   std::shared_ptr<const EarthOrientationSeries> earth_orientation;
   std::shared_ptr<const Nrlmsise00Tables> atmosphere;  ///< null without drag, as is the next
   std::shared_ptr<const SpaceWeather> space_weather;

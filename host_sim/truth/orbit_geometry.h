@@ -16,7 +16,7 @@ struct OrbitGeometry {
   double h = 0.0;          ///< specific angular momentum, m^2/s
   double n = 0.0;          ///< mean motion, rad/s
   double eta = 0.0;        ///< sqrt(1 - e^2)
-  double cos_theta = 0.0;  ///< of the true argument of latitude
+  double cos_theta = 0.0;  ///< cosine of the true argument of latitude
   double sin_theta = 0.0;
   double cos_i = 0.0;
   double sin_i = 0.0;

@@ -47,7 +47,7 @@ class SpacecraftPropagator {
   /// what is kept.
   fsw::orbit::CartesianState state_at(double seconds) const;
 
-  /// The same with all of the acceleration.
+  /// Returns the state with the total acceleration.
   OrbitalMotion motion_at(double seconds) const;
 
   /// Input of torques at a time as in state_at; for a time after the end of the last step, the input there:

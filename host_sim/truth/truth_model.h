@@ -24,7 +24,7 @@ struct TruthStatistics {
   std::int64_t steps = 0;
   std::int64_t rejected_steps = 0;
   std::int64_t force_evaluations = 0;
-  std::int64_t edges_crossed = 0;  ///< of shadows
+  std::int64_t edges_crossed = 0;  ///< number of shadow edges crossed
   double wall_s = 0.0;             ///< wall-clock time spent inside the model; of all only
 };
 
@@ -41,7 +41,7 @@ class TruthModel {
   /// std::domain_error for a state that is not an orbit.
   std::size_t add_spacecraft(const SpacecraftSettings& spacecraft);
 
-  /// The same without a surface: where no force acts on it.
+  /// Adds a spacecraft without a surface, on which no surface force acts.
   std::size_t add_spacecraft(const std::string& name, const fsw::orbit::CartesianState& osculating) {
     return add_spacecraft({name, osculating, {}});
   }

@@ -28,9 +28,9 @@ struct TruthSettings {
   std::filesystem::path gravity_file = "gravity/ggm05s_120.txt";
   std::filesystem::path earth_orientation_file = kBundled;  ///< or kNone
   std::filesystem::path space_weather_file = kBundled;      ///< or kConstant
-  double constant_f107 = 150.0;                             ///< of kConstant, 1e-22 W/m^2/Hz
+  double constant_f107 = 150.0;                             ///< flux of kConstant, 1e-22 W/m^2/Hz
   double constant_ap = 15.0;
-  bool accept_predictions = true;  ///< of Earth orientation and space weather in published files
+  bool accept_predictions = true;  ///< accepts predicted Earth orientation and space weather in published files
 
   static constexpr const char* kBundled = "bundled";
   static constexpr const char* kNone = "none";

@@ -1,5 +1,5 @@
 #pragma once
-// The log of a run that is flown again: event by event, what is flown now has to be what the log holds.
+// The log of a recorded run against which a repetition of the run is compared, event by event.
 
 #include <cstdint>
 #include <filesystem>
@@ -20,7 +20,7 @@ class ThinnedLog : public DamagedLog {
   using DamagedLog::DamagedLog;
 };
 
-/// What is flown now is not what the log holds; the message names step and packet.
+/// The repetition differs from the log; the message names step and packet.
 class FlownOtherwise : public std::runtime_error {
  public:
   FlownOtherwise(fsw::GpsTime time, const std::string& what) : std::runtime_error(what), time_(time) {}
@@ -39,7 +39,7 @@ class FlownLog {
 
   /// Events before the damage or cut, the end excepted.
   [[nodiscard]] std::uint64_t events() const { return events_; }
-  /// Steps that were begun, from 0 on, and the time of the last one.
+  /// Number of steps that the run began, from 0 on, and the time of the last one.
   [[nodiscard]] std::uint32_t steps() const { return steps_; }
   [[nodiscard]] fsw::GpsTime time() const { return time_; }
   /// The run closed it.

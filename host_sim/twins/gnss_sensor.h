@@ -19,7 +19,7 @@ class GnssSensor final : public PacketSource {
  public:
   struct Settings {
     std::string spacecraft;          ///< that carries the receiver
-    std::uint8_t flight_number = 0;  ///< of the spacecraft whose flight software receives the packets
+    std::uint8_t flight_number = 0;  ///< number of the spacecraft whose flight software receives the packets
     fsw::GpsTime start;              ///< first epoch
     fsw::Duration period;            ///< > 0, integer milliseconds: between calls of the receiver
   };

@@ -19,7 +19,7 @@ class DamagedLog : public std::runtime_error {
 };
 
 struct LoggedEvent {
-  std::uint64_t offset = 0;  ///< of its first byte in the file
+  std::uint64_t offset = 0;  ///< offset of its first byte in the file
   std::int64_t number = 0;
   std::int64_t timestamp = 0;  ///< us
   std::string channel;
@@ -34,11 +34,11 @@ class LcmLogReader {
   /// Nothing at the end of the file, or where it ends within an event: then cut_short(). Throws DamagedLog.
   [[nodiscard]] std::optional<LoggedEvent> next();
 
-  /// Whether another event may begin after the byte `offset`: its sync word stands there.
+  /// Whether another event may begin after the byte `offset`: whether a sync word follows.
   [[nodiscard]] bool has_event_after(std::uint64_t offset);
 
   [[nodiscard]] bool cut_short() const { return cut_short_; }
-  /// Of the first byte that was not read yet.
+  /// Offset of the first byte that was not read yet.
   [[nodiscard]] std::uint64_t offset() const { return offset_; }
   [[nodiscard]] std::uint64_t size() const { return size_; }
 

@@ -36,8 +36,8 @@ inline constexpr const char* kEndChannel = "VBAR_END";
 
 /// A packet at the interface of a flight computer.
 struct PacketRecord {
-  std::uint32_t step = 0;  ///< of the flight step that received it (its inputs and its tick) or sent it
-  fsw::GpsTime time;       ///< of that step
+  std::uint32_t step = 0;  ///< number of the flight step that received it (its inputs and its tick) or sent it
+  fsw::GpsTime time;       ///< time of that step
   bool to_flight = false;
   Packet packet;
   /// Packets that are not in the log, in place of `packet`, which is empty then.
@@ -71,9 +71,10 @@ class PacketLogWriter {
 
   /// Throws std::runtime_error if the file cannot be written.
   void write(const PacketRecord& record);
-  /// The same of a recipe (Measurement::recipe) of this time.
+  /// Writes a recipe (Measurement::recipe) of this time. Throws as write().
   void write_recipe(fsw::GpsTime time, std::vector<std::uint8_t> recipe);
-  /// The same of a recording (Measurement::recording); it is in the file when the function returns.
+  /// Writes a recording (Measurement::recording) of this time, which is in the file when the function returns. Throws
+  /// as write().
   void write_recording(fsw::GpsTime time, std::vector<std::uint8_t> recording);
 
   /// Hands all that was written to the operating system: it outlives the program. Throws as write.
@@ -100,14 +101,14 @@ struct LoggedEvent;
 /// Two consecutive events whose numbers are not consecutive: events between them were removed.
 /// The first event is preceded by event -1.
 struct EventGap {
-  std::uint64_t offset = 0;  ///< of the second in the file
+  std::uint64_t offset = 0;  ///< offset of the second event in the file
   std::int64_t before = 0, after = 0;
 };
 
 /// What a log holds in place of image tiles, in the order of the file and as encoded.
 struct ImagesOfLog {
   struct Recording {
-    std::uint64_t offset = 0;  ///< of the event in the file
+    std::uint64_t offset = 0;  ///< offset of the event in the file
     std::vector<std::uint8_t> bytes;
   };
   std::filesystem::path file;
@@ -120,7 +121,7 @@ struct PacketLog : ImagesOfLog {
   std::uint64_t bytes = 0;                     ///< size of the file
   bool cut_short = false;                      ///< the file ends within an event, as that of a killed run may
   std::optional<EventGap> gap;                 ///< the first one
-  std::uint64_t events = 0;                    ///< of all channels, the end excepted
+  std::uint64_t events = 0;                    ///< number of events of all channels, the end excepted
   std::optional<std::uint64_t> events_at_end;  ///< as VBAR_END states; none if the log has no end
 };
 

@@ -42,7 +42,7 @@ struct SpacecraftTruth {
   std::string name;
   fsw::orbit::CartesianState orbit;
   std::optional<truth::AttitudeState> attitude = std::nullopt;  ///< if it has one
-  // For a source that requests them (TruthDetail); otherwise empty.
+  // For a source that requests them (TruthDetail); empty for others.
   std::optional<fsw::Vector3> acceleration_eci = std::nullopt;  ///< the point mass included, m/s^2
   std::optional<fsw::Vector3> angular_acceleration_body =
       std::nullopt;  ///< rate of change of the angular rate in body axes, rad/s^2

@@ -36,7 +36,7 @@ class RecordedLog final : public PacketSource {
   /// TileSource.
   Measurement measure(const TruthSnapshot& truth) override;
 
-  /// Of a camera.
+  /// True for the log of a camera.
   [[nodiscard]] bool truth_is_compared() const override { return plays_images_; }
 
  private:
@@ -49,7 +49,7 @@ class RecordedLog final : public PacketSource {
   [[nodiscard]] std::vector<Delivery>::const_iterator first_at_or_after(fsw::GpsTime time) const;
 
   std::vector<Delivery> deliveries_;   ///< in order of time
-  std::set<fsw::GpsTime> epochs_;      ///< of deliveries and exposures
+  std::set<fsw::GpsTime> epochs_;      ///< epochs of deliveries and exposures
   std::unique_ptr<TileSource> tiles_;  ///< null: the log holds all tiles
   bool plays_images_ = false;
 };

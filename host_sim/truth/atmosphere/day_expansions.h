@@ -25,7 +25,7 @@ struct LowerThermosphereVariations {
   double bottom_gradient;             ///< at 72.5 km
 };
 
-/// The same below 72.5 km, in the order of the published array pma without its ninth row (the bottom gradient above).
+/// Variations below 72.5 km, in the order of the published array pma without its ninth row (the bottom gradient above).
 struct LowerAtmosphereVariations {
   std::array<double, 3> stratosphere;  ///< at 55, 45, 32.5 km
   std::array<double, 4> troposphere;   ///< at 20, 15, 10, 0 km

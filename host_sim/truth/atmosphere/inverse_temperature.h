@@ -45,7 +45,7 @@ class InverseTemperature {
  private:
   double top_km_ = 0.0;
   double depth_ = 0.0;   // geopotential km, negative
-  double weight_ = 0.0;  // of the whole depth at 1 K
+  double weight_ = 0.0;  // weight of the whole depth at 1 K
   ClampedSpline<N> spline_;
 };
 

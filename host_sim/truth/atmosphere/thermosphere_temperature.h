@@ -33,7 +33,7 @@ struct ThermosphereLevel {
   double weight = 0.0;       ///< minus the integral of g dz / (R T) from the boundary, mol/g
 };
 
-/// Of Bates's profile, at the joint or above.
+/// Returns the level of Bates's profile at an altitude, the joint or above.
 ThermosphereLevel bates_level(const LatitudeGravity& gravity, const BatesProfile& bates, double altitude_km);
 
 class ThermosphereTemperature {

@@ -47,7 +47,8 @@ class AttitudeSequence final : public AttitudeMotion {
 
   std::unique_ptr<AttitudeMotion> first_;
   std::vector<Later> later_;
-  std::vector<std::optional<SlewStart>> starts_;  ///< of `later_`, once reached: neither motion keeps its past
+  std::vector<std::optional<SlewStart>>
+      starts_;  ///< beginnings of the slews of `later_`, once reached: neither motion keeps its past
 };
 
 }  // namespace vbar::truth

@@ -26,7 +26,7 @@ struct Body {
   std::string name;
   fsw::Matrix3 inertia_kgm2 = fsw::Matrix3::Zero();      ///< about the centre of mass, in body axes
   fsw::Vector3 centre_of_mass_m = fsw::Vector3::Zero();  ///< from the origin of the body frame
-  std::vector<Facet> facets;                             ///< of a convex body; empty: its shape is unknown
+  std::vector<Facet> facets;                             ///< facets of a convex body; empty: its shape is unknown
 };
 
 }  // namespace vbar::truth

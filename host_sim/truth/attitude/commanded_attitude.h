@@ -14,7 +14,7 @@ namespace vbar::truth {
 
 struct Sinusoid {
   double amplitude = 0.0;   ///< rad
-  double rate_radps = 0.0;  ///< of its argument
+  double rate_radps = 0.0;  ///< rate of its argument
   double phase = 0.0;       ///< at the epoch
 };
 

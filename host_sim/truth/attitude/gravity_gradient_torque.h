@@ -1,7 +1,7 @@
 #pragma once
-// Torque of the gravity gradient over the body: T = 3 gm / r^3 (u x J u), u the unit vector from the
-// Earth's centre (Hughes 2004, eq. 8.1.15; Wertz 1978, eq. 17-31). Of the point mass only: the Earth's oblateness adds
-// a thousandth of it.
+// Torque of the gravity gradient over the body: T = 3 gm / r^3 (u x J u), u the unit vector from the Earth's centre
+// (Hughes 2004, eq. 8.1.15; Wertz 1978, eq. 17-31). The Earth is a point mass: its oblateness would add a thousandth of
+// the torque.
 
 #include "host_sim/truth/attitude/torque.h"
 

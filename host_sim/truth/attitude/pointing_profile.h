@@ -14,7 +14,7 @@ namespace vbar::truth {
 struct OrbitalMotion {
   fsw::Vector3 position_eci = fsw::Vector3::Zero();
   fsw::Vector3 velocity_eci = fsw::Vector3::Zero();
-  fsw::Vector3 acceleration_eci = fsw::Vector3::Zero();  ///< all of it, the point mass included
+  fsw::Vector3 acceleration_eci = fsw::Vector3::Zero();  ///< total acceleration, the point mass included
 };
 
 using MotionOfTime = std::function<OrbitalMotion(double seconds)>;

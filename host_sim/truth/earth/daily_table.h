@@ -15,7 +15,7 @@
 
 namespace vbar::truth {
 
-/// Exactly N numbers separated by commas, into `numbers`; false otherwise.
+/// Parses exactly N numbers separated by commas into `numbers`; false for any other text.
 template <std::size_t N>
 bool parse_numbers(std::string_view line, std::array<double, N>& numbers) {
   const char* at = line.data();

@@ -35,7 +35,8 @@ class EarthOrientationSeries {
   /// Throws std::runtime_error naming file, line and what is accepted.
   static EarthOrientationSeries load(const std::filesystem::path& file);
 
-  /// `days` in order, without gaps, at least four of them: std::invalid_argument otherwise.
+  /// Makes a series of `days`: in order, without gaps, at least four of them. Throws std::invalid_argument for other
+  /// days.
   explicit EarthOrientationSeries(std::vector<Day> days);
 
   /// UT1 = UTC as at `time`, a pole at the origin: what is known without data, for all of GPS time. A leap second after

@@ -26,9 +26,9 @@ struct CelestialPole {
 /// through the precession-nutation matrix, agrees with it to a microarcsecond (5e-12 rad), as the Conventions say.
 CelestialPole celestial_pole_iau2006a(JulianDate tt);
 
-/// The same by interpolation: error below 1e-12 rad in x, y and s (held by its test), some 20 ns a call.
-/// Nodes lie at fixed instants, so the result depends on the date only, never on earlier calls.
-/// Not thread-safe (nodes are cached): one object per thread.
+/// Interpolates celestial_pole_iau2006a(): error below 1e-12 rad in x, y and s (held by its test), some 20 ns a call.
+/// Nodes lie at fixed instants, so the result depends on the date only, never on earlier calls. Not thread-safe (nodes
+/// are cached): one object per thread.
 class CelestialPoleInterpolator {
  public:
   CelestialPole at(JulianDate tt);

@@ -34,7 +34,8 @@ JulianDate ut1_of(JulianDate tai, double ut1_minus_tai_s);
 /// TAI-UTC, s, at 0h UTC of a modified Julian day. Throws std::out_of_range before UTC's leap seconds (1972).
 double tai_minus_utc_s(int mjd_utc);
 
-/// The first modified Julian day with this day's TAI-UTC: that of a leap second, or of 1972-01-01. Throws likewise.
+/// Returns the first modified Julian day with this day's TAI-UTC: that of a leap second, or of 1972-01-01. Throws
+/// std::out_of_range before UTC's leap seconds (1972).
 int first_day_of_tai_minus_utc(int mjd_utc);
 
 /// The instant of an ISO 8601 UTC text: YYYY-MM-DDThh:mm:ss[.fraction][Z], a blank for the T allowed, at most nine

@@ -54,7 +54,7 @@ class DragForce final : public Force {
   std::shared_ptr<const SpaceWeather> space_weather_;
   GeomagneticIndex geomagnetic_index_;
   fsw::GpsTime epoch_;
-  // Of the interval entered last.
+  // Indices and day of the interval entered last.
   SolarIndices indices_;
   int day_of_year_ = 1;
   double midnight_s_ = 0.0;  // after the epoch

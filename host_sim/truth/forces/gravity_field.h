@@ -17,9 +17,8 @@ namespace vbar::truth {
 /// Immutable once made; may be shared between threads.
 class GravityField {
  public:
-  /// The field up to `degree` and `order` (0 <= order <= degree <= that of the coefficients): std::invalid_argument
-  /// otherwise.
-  /// `sum` chooses the build of the inner loop; all give the same bits.
+  /// Makes the field up to `degree` and `order` (0 <= order <= degree <= that of the coefficients). Throws
+  /// std::invalid_argument for other degrees. `sum` chooses the build of the inner loop; all give the same bits.
   GravityField(const GravityCoefficients& coefficients, int degree, int order,
                HarmonicSummation sum = fastest_harmonic_summation());
 

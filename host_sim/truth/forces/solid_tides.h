@@ -16,8 +16,8 @@
 
 namespace vbar::truth {
 
-/// The part of the permanent tide, the mean of the tide over time, in C20 of a gravity model: its deformation
-/// (zero tide) or none of it (tide free).
+/// Part of the permanent tide, the mean of the tide over time, that C20 of a gravity model contains: its deformation
+/// (zero tide) or nothing (tide free).
 enum class TideSystem { kZeroTide, kTideFree };
 
 /// The tide system of a coefficient file: "zero_tide" or "tide_free". Throws std::invalid_argument, naming both, for

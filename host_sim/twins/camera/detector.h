@@ -35,8 +35,8 @@ class Detector {
   /// The region of `settings` must not be empty. `camera_name` names the detector's random numbers.
   Detector(const CameraSettings& settings, std::uint64_t seed, std::string_view camera_name);
 
-  /// A detector whose hot pixels are known, so that every region of it has the same ones: those of `hot_pixels` that
-  /// are in the region.
+  /// Makes a detector whose hot pixels are known, so that all its regions have the same ones: those of `hot_pixels`
+  /// that are in the region.
   Detector(const CameraSettings& settings, std::uint64_t seed, std::string_view camera_name,
            std::span<const HotPixel> hot_pixels);
 

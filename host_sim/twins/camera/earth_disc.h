@@ -10,7 +10,7 @@ namespace vbar::twins::camera {
 struct EarthSight {
   double covered = 0.0;        ///< 0 above the limb, 1 below; linear over `blur` about it
   double distance_m = 0.0;     ///< to the surface, or to the limb
-  double cosine_of_sun = 0.0;  ///< of the Sun's angle from the local vertical there; negative at night
+  double cosine_of_sun = 0.0;  ///< cosine of the Sun's angle from the local vertical there; negative at night
 };
 
 class EarthDisc {
@@ -24,7 +24,7 @@ class EarthDisc {
   /// True if something at `distance_m` along `direction_eci` is behind the Earth.
   [[nodiscard]] bool hides(const fsw::Vector3& direction_eci, double distance_m) const;
 
-  /// The smallest cone about the centre's direction that holds all of it: half angle, rad.
+  /// Half angle of the smallest cone about the centre's direction that holds the whole Earth, rad.
   [[nodiscard]] double angular_radius() const { return angular_radius_; }
   [[nodiscard]] const fsw::Vector3& centre_direction_eci() const { return centre_direction_eci_; }
 

@@ -20,7 +20,7 @@ constexpr std::int32_t image_number_on_link(std::int64_t exposure_number) {
 /// Identifies an image and its receiver.
 struct ImageLabel {
   fsw::GpsTime time;            ///< middle of the exposure
-  std::int64_t number = 0;      ///< of the exposure, 0 or above; the link counts it modulo 2^31
+  std::int64_t number = 0;      ///< number of the exposure, 0 or above; the link counts it modulo 2^31
   std::uint8_t spacecraft = 0;  ///< whose flight software receives it
   std::uint8_t unit = 0;        ///< number of the camera
   double exposure_s = 0.0;      ///< its duration

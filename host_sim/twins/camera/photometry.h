@@ -13,7 +13,7 @@
 
 namespace vbar::twins::camera {
 
-/// Of the Sun at 1 au (IAU 2015: V = -26.74 +- 0.02 on several authors' scales).
+/// Magnitude V of the Sun at 1 au (IAU 2015: V = -26.74 +- 0.02 on several authors' scales).
 inline constexpr double kSunMagnitude = -26.74;
 inline constexpr double kSunColour = 0.653;                  ///< B-V; Ramirez et al. 2012
 inline constexpr double kAstronomicalUnit = 1.495978707e11;  ///< m, IAU 2012

@@ -30,8 +30,8 @@ struct NoiseKey {
   std::uint64_t exposure = 0;
 };
 
-/// The words of chunk `chunk` of an image: pixel k of it gets word k / 64 of the block numbered 64 * chunk + k % 64,
-/// counter (block, exposure's low word, its high word, kind).
+/// Draws the words of chunk `chunk` of an image: its pixel k gets word k / 64 of the block numbered 64 * chunk + k %
+/// 64, counter (block, exposure's low word, its high word, kind).
 void draw_words(const NoiseKey& key, NoiseKind kind, std::uint32_t chunk, ChunkWords& words);
 
 /// Standard normal numbers, up to 6.3 either way (the word's finest probability is 2^-33); error below 1e-5.

@@ -28,7 +28,8 @@ class PointSpread {
 
   static constexpr double kWide_px = 96.0;
 
-  /// Distance in pixels from a point of given electrons at which its light is lost: 0.05 electrons a pixel, 1e-4 of it.
+  /// Returns the distance in pixels from a point of given electrons at which its light is neglected: 0.05 electrons a
+  /// pixel, 1e-4 of the light.
   [[nodiscard]] double reach_px(double electrons) const;
 
  private:

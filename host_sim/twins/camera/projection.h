@@ -1,6 +1,6 @@
 #pragma once
-// From directions to the pixels of an image: the lens of a camera, or the calibrated map of a display that stands in
-// for the sky of one.
+// From directions to the pixels of an image: the lens of a camera, or the calibrated map of a display that shows a
+// camera its sky.
 
 #include <optional>
 

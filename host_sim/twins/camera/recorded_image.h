@@ -16,7 +16,7 @@ namespace vbar::twins::camera {
 struct ImageHeader {
   ImageLabel label;
   Region region;
-  int bits = 12;  ///< of a pixel, 8 or 12
+  int bits = 12;  ///< bits of a pixel, 8 or 12
 
   [[nodiscard]] ImageKey key() const { return {label.spacecraft, label.unit, image_number_on_link(label.number)}; }
 };

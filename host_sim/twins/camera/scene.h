@@ -59,7 +59,7 @@ class SceneRenderer {
   [[nodiscard]] double sun_in_sight(const View& view);
 
   CameraSettings settings_;
-  double duration_s_ = 0.0;  ///< of the exposure being rendered
+  double duration_s_ = 0.0;  ///< duration of the exposure being rendered
   std::shared_ptr<const Projection> projection_;
   PointSpread spread_;
   StarSky sky_;

@@ -35,7 +35,7 @@ class WideSpread {
            PhotonImage& image);
 
  private:
-  /// Pixels x to before x + width, rows likewise.
+  /// Pixels x to before x + width, and y to before y + height.
   struct Box {
     int x = 0, y = 0, width = 0, height = 0;
   };

@@ -35,7 +35,8 @@ fsw::Vector3 true_boresight(const BodyFrameSettings& settings, const BodyFrameEr
 /// body; of a pair that keeps parallel attitudes it is a constant vector, indistinguishable from a baseline.)
 double static_floor_rms_m(const BodyFrameSettings& servicer, const BodyFrameSettings& target);
 
-/// The same of one run's draws for bodies with parallel axes: target's antenna error minus servicer's, body frame, m.
+/// Returns the static floor of one run's draws for bodies with parallel axes: target's antenna error minus servicer's,
+/// body frame, m.
 fsw::Vector3 static_floor_m(const BodyFrameSettings& servicer_settings, const BodyFrameErrors& servicer,
                             const BodyFrameSettings& target_settings, const BodyFrameErrors& target);
 

@@ -19,7 +19,7 @@ struct Ephemeris {
   double e = 0.0;
   double m0 = 0.0;           ///< rad, as all angles
   double delta_n = 0.0;      ///< rad/s
-  double node_at_toe = 0.0;  ///< of geostationary BeiDou satellites: in the frame of their model
+  double node_at_toe = 0.0;  ///< rad; that of geostationary BeiDou satellites is in the frame of their model
   double omega_dot = 0.0;    ///< rad/s
   double i0 = 0.0;
   double i_dot = 0.0;  ///< rad/s

@@ -28,8 +28,8 @@ struct ConstellationSettings {
   SatelliteSet gps = SatelliteSet::kBroadcast;
   SatelliteSet galileo = SatelliteSet::kBroadcast;
   SatelliteSet beidou = SatelliteSet::kBroadcast;
-  /// Of kBroadcast: absolute, or from the data folder; empty: those of the data folder. The satellites of a system come
-  /// from the first file that has any.
+  /// Files of kBroadcast: absolute, or from the data folder; empty: those of the data folder. The satellites of a
+  /// system come from the first file that has any.
   std::vector<std::filesystem::path> navigation_files{};
   // True minus broadcast, one sigma. Sizes of 2011: signal-in-space range error about 1 m.
   double orbit_error_radial_m = 0.4;

@@ -1,6 +1,6 @@
 #pragma once
-// Settings of one receiver and its antenna in a mission. Defaults are those of the paper's Appendix A
-// (marked A) or, otherwise of a NovAtel OEM628 and a typical patch antenna.
+// Settings of one receiver and its antenna in a mission. Defaults are those of the paper's Appendix A (marked A), the
+// others those of a NovAtel OEM628 and a typical patch antenna.
 
 #include <cstdint>
 
@@ -36,7 +36,8 @@ struct TrackingSettings {
   double integration_s = 0.02;
   double acquisition_threshold_dbhz = 33.0;
   double loss_threshold_dbhz = 28.0;
-  double cycle_slips_per_hour = 0.02;  ///< of each signal; every slip is seen by the receiver: the lock time restarts
+  double cycle_slips_per_hour =
+      0.02;  ///< rate of each signal; every slip is seen by the receiver: the lock time restarts
   double undetected_slip_fraction = 0.0;  ///< fraction of these slips that the receiver does not detect
   double code_bias_sigma_m = 0.0;         ///< constant code delay of each signal in the receiver
   double carrier_wander_sigma_mm = 0.0;   ///< first-order Gauss-Markov error of each satellite's and signal's carrier
@@ -88,7 +89,7 @@ enum class GpsEphemerisLog : std::uint8_t { kRawEphem, kGpsEphem };
 
 /// Logs requested from the receiver.
 struct OutputSettings {
-  double period_s = 10.0;               ///< of RANGE, BESTXYZ, TIME: 0.1 to 60, whole milliseconds
+  double period_s = 10.0;               ///< period of RANGE, BESTXYZ, TIME: 0.1 to 60, whole milliseconds
   double ephemeris_period_s = 300.0;    ///< each ephemeris again; new ones at once
   double corrections_period_s = 300.0;  ///< IONUTC
   GpsEphemerisLog gps_ephemeris = GpsEphemerisLog::kRawEphem;

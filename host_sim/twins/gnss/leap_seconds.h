@@ -18,7 +18,7 @@ UtcOffset utc_offset_at(fsw::GpsTime time);
 struct CalendarTime {
   int year = 0;
   unsigned month = 0, day = 0, hour = 0, minute = 0;
-  unsigned millisecond = 0;  ///< of the minute
+  unsigned millisecond = 0;  ///< milliseconds of the minute
 };
 /// UTC of `time`, cut to milliseconds, for an offset that holds then.
 CalendarTime utc_calendar(fsw::GpsTime time, const UtcOffset& offset);

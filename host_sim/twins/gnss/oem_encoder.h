@@ -42,7 +42,7 @@ enum class TimeStatus : std::uint8_t {
 };
 
 /// Bits of the receiver status word.
-inline constexpr unsigned kTransmitOverrunBit = 8;  ///< of COM1; those of COM2 and COM3 follow
+inline constexpr unsigned kTransmitOverrunBit = 8;  ///< bit of COM1; those of COM2 and COM3 follow
 inline constexpr unsigned kPositionInvalidBit = 19;
 inline constexpr unsigned kClockModelInvalidBit = 22;
 
@@ -120,7 +120,7 @@ void append_time(Bytes& bytes, const Header& header, const ClockRecord& clock, c
 /// VERSION: one component, the receiver itself.
 struct VersionRecord {
   std::string_view model, serial, hardware, software, boot;  ///< up to 16 characters
-  std::string_view date, time;                               ///< of the software, up to 12 characters
+  std::string_view date, time;                               ///< date of the software, up to 12 characters
 };
 void append_version(Bytes& bytes, const Header& header, const VersionRecord& version);
 

@@ -21,13 +21,13 @@ struct SignalTrack {
       : signal(of), stream(draws), carrier_wander_m(wander_m) {}
 
   Signal signal;
-  engine::RandomStream stream;           ///< of its slips, ambiguities and noise
+  engine::RandomStream stream;           ///< stream of its slips, ambiguities and noise
   engine::GaussMarkov carrier_wander_m;  ///< continues whether the signal is tracked or not
   bool tracking = false;
-  fsw::GpsTime lock_since;            ///< of the continuous count, as the receiver reports it
+  fsw::GpsTime lock_since;            ///< start of the continuous count, as the receiver reports it
   std::int64_t ambiguity_cycles = 0;  ///< added to the true phase
   int slips = 0;                      ///< detected and undetected, since the start
-  double cn0_dbhz = 0.0;              ///< of the last update
+  double cn0_dbhz = 0.0;              ///< C/N0 of the last update
 };
 
 class SatelliteTracking {

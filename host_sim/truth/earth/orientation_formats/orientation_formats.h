@@ -37,7 +37,7 @@ struct OrientationFormat {
 [[nodiscard]] OrientationDays read_eop_c04(std::string_view text, const std::string& file);
 
 // finals2000A and EOP C04 as the IERS data centre gives them as CSV: one set of column names, the types "final" and
-// "prediction" in finals2000A alone. Offsets of the nutation of IAU 1980 are refused.
+// "prediction" in finals2000A alone. Offsets of the nutation of IAU 1980 are rejected.
 [[nodiscard]] bool is_iers_csv(std::string_view text);
 [[nodiscard]] OrientationDays read_iers_csv(std::string_view text, const std::string& file);
 

@@ -22,7 +22,8 @@ inline constexpr double kLargestFlux = 1000.0;
 struct WeatherFormat {
   std::string_view name;
   bool (*recognises)(std::string_view text);
-  /// Throws files::FormatError. Of days before GPS time (1980-01-06) only the date is looked at; they are left out.
+  /// Reads the days of a text. Throws files::FormatError. Only the date is read of days before GPS time (1980-01-06),
+  /// which are left out.
   WeatherDays (*read)(std::string_view text, const std::string& file);
 };
 

@@ -33,7 +33,7 @@ struct GravityFormat {
 /// all; std::invalid_argument for a degree that the model lacks.
 [[nodiscard]] GravityCoefficients read_gravity(std::string_view text, const std::string& file, int degree);
 
-inline constexpr int kHighestDegree = 2190;  ///< of the largest published models: limits damaged headers
+inline constexpr int kHighestDegree = 2190;  ///< degree of the largest published models: limits damaged headers
 
 void check_degree(const std::string& file, int degree, int max_degree);
 

@@ -24,7 +24,7 @@ enum class CadMaterials {
 struct CadSource {
   std::filesystem::path file;
   double unit_m = 1.0;                           ///< the unit of the file's coordinates
-  fsw::Vector3 origin_m = fsw::Vector3::Zero();  ///< of the body frame, along the axes of the file
+  fsw::Vector3 origin_m = fsw::Vector3::Zero();  ///< origin of the body frame, along the axes of the file
   fsw::Matrix3 R_body_file = fsw::Matrix3::Identity();
   std::optional<PlainSurface> surface{};
   CadMaterials materials = CadMaterials::kFile;

@@ -23,9 +23,9 @@ struct EphemerisFormat {
 
 // RINEX navigation files, versions 2.xx (GPS), 3.xx and 4.xx (GPS LNAV, Galileo I/NAV, BeiDou D1 and D2). Left out, and
 // named in the note, are records of other systems and messages, and sets that cannot be read or cannot be right, as
-// merged files hold some. Of each satellite one set: that whose reference time is nearest to noon of the file's day,
-// which is the day of the median reference time. Refused are files whose records have no valid structure, and those
-// with no set of the systems in use and nothing of another system.
+// merged files hold some. One set of each satellite is used: that whose reference time is nearest to noon of the file's
+// day, which is the day of the median reference time. Files whose records have no valid structure are rejected, and so
+// are those with no set of the systems in use and nothing of another system.
 [[nodiscard]] bool is_rinex(std::string_view text);
 [[nodiscard]] EphemerisFile read_rinex(std::string_view text, const std::string& file, const SystemSet& used);
 
@@ -39,7 +39,7 @@ struct EphemerisFormat {
 struct BroadcastRecord {
   SatelliteId satellite;
   double week = 0.0, toe_s = 0.0;
-  double toc_s = 0.0;    ///< of the same week: below 0 or beyond its end in the weeks beside
+  double toc_s = 0.0;    ///< time in the same week: below 0 or beyond its end in the weeks beside
   double omega0 = 0.0;   ///< at the begin of the week
   Ephemeris elements{};  ///< all but reference time, node and clock
   double af0 = 0.0, af1 = 0.0, af2 = 0.0;
@@ -48,7 +48,7 @@ struct BroadcastRecord {
 /// Between the reference times of clock and orbit.
 inline constexpr double kLongestClockAge_s = 86400.0;
 
-/// Galileo has two satellites at 0.16 (E14, E18); the flight software refuses more.
+/// Galileo has two satellites at 0.16 (E14, E18); the flight software rejects more.
 inline constexpr double kMaxEccentricity = 0.2;
 
 /// What is wrong with a record; empty if nothing is.
