@@ -14,7 +14,7 @@
 
 namespace vbar::mission {
 
-/// Reads `file`, applies the overrides ("path=value", overrides.h) to it in order, checks all. Throws
+/// Reads `file`, applies the overrides ("path=value", mission_document.h) to it in order, checks all. Throws
 /// MissionError.
 Mission load_mission(const std::filesystem::path& file, std::span<const std::string> overrides,
                      const Installation& installation);

@@ -317,7 +317,7 @@ template <class Settings>
   throw std::logic_error("the mission was loaded without a kind of sensor that is asked for");
 }
 
-/// The names that mission files and summaries use (names.h has them all).
+/// The names that mission files and summaries use (the constants below list all).
 [[nodiscard]] std::string_view name_of(FaultKind kind);
 [[nodiscard]] std::string_view name_of(FlightTarget target);
 [[nodiscard]] std::string_view name_of(FlightLink link);

@@ -123,7 +123,7 @@ States without_gap(const Track& track, std::size_t place) {
   return States(track.states).subspan(begin, end - begin);
 }
 
-/// |w| of the nodes (interpolation.h), as a logarithm: far nodes overflow nothing.
+/// |w| of the nodes (orbit_file.h), as a logarithm: far nodes overflow nothing.
 double log_node_product(States nodes, fsw::GpsTime time, Polynomial polynomial) {
   double sum = 0.0;
   for (const TimedState& node : nodes) sum += std::log(std::abs(fsw::seconds(node.time - time)));

@@ -1,6 +1,6 @@
 #pragma once
 // Orbits from files in published formats: each format is recognised by its contents, whatever the name of the file;
-// each has its file here and its line in the list.
+// each has its functions here and its line in the list.
 
 #include <filesystem>
 #include <optional>

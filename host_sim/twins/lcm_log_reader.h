@@ -1,6 +1,6 @@
 #pragma once
 // Events of a file in LCM's log format, read defensively: every size is checked against the file before memory is
-// allocated for it (lcm_log_format.h).
+// allocated for it.
 
 #include <cstdint>
 #include <filesystem>

@@ -1,5 +1,5 @@
 #pragma once
-// Events into a file in LCM's log format, (lcm_log_format.h); lcm-logplayer and lcm_eventlog_read_next_event()
+// Events into a file in LCM's log format; lcm-logplayer and lcm_eventlog_read_next_event()
 // read it.
 
 #include <cstdint>

@@ -126,7 +126,7 @@ struct PacketLog : ImagesOfLog {
 };
 
 /// Reads all packets of a log; events of other channels are ignored. Throws std::runtime_error that names a file
-/// that cannot be read, and DamagedLog (lcm_log_reader.h) for one that is not an LCM log or holds a damaged record.
+/// that cannot be read, and DamagedLog (lcm_log.h) for one that is not an LCM log or holds a damaged record.
 [[nodiscard]] PacketLog read_packet_log(const std::filesystem::path& file);
 
 }  // namespace vbar::twins

@@ -10,7 +10,7 @@
 
 namespace vbar::twins {
 
-/// Restores them. A camera provides it (camera/tile_restorer.h).
+/// Restores the tiles. A camera provides it (camera/logged_image.h).
 class TileSource {
  public:
   TileSource() = default;

@@ -56,13 +56,12 @@ extern const SensorKind kCamera;
 [[nodiscard]] std::unique_ptr<Evaluation> evaluate_camera(const mission::Sensor& sensor,
                                                           const EvaluationContext& context);
 
-// In read_camera.cpp and read_camera_navigation.cpp.
+// In camera_configuration.cpp.
 std::shared_ptr<const mission::SensorSettings> read_camera(const mission::TableReader& section,
                                                            const mission::SensorContext& context);
 std::shared_ptr<const mission::SharedSettings> read_camera_shared(const mission::TableReader& document,
                                                                   const mission::Mission& mission);
 
-// In camera_telecommands.cpp.
 void add_camera_telecommands(const mission::Sensor& sensor, const TelecommandContext& context,
                              Telecommands& telecommands);
 

@@ -50,10 +50,10 @@ void summarise_images(const report::RunRecord& record, report::Summary& summary)
 [[nodiscard]] std::vector<report::ConsistencyFigure> image_consistency(const report::RunRecord& record);
 
 /// Published figures of experiments 1 and 2; none for a run that does not navigate by the same measurements to the same
-/// waypoints (camera_paper_columns.cpp).
+/// waypoints (camera_figures.cpp).
 [[nodiscard]] std::vector<report::PaperColumn> camera_paper_columns(const report::RunRecord& record);
 
-// In angles_only_performance.cpp.
+// In section_angles_only.cpp.
 /// Errors at the waypoints and delta-v as HTML; the paper's figures below those of a run that meets its waypoints.
 [[nodiscard]] std::string angles_only_performance(const report::RunRecord& record);
 

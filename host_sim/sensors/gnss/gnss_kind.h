@@ -44,7 +44,7 @@ void summarise_gnss(const report::RunRecord& record, report::Summary& summary);
 /// NEES of the relative state; NIS of all codes and carrier phases of an epoch.
 [[nodiscard]] std::vector<report::ConsistencyFigure> gnss_consistency(const report::RunRecord& record);
 
-// In read_gnss.cpp.
+// In gnss_kind.cpp.
 std::shared_ptr<const mission::SensorSettings> read_gnss(const mission::TableReader& section,
                                                          const mission::SensorContext& context);
 std::shared_ptr<const mission::SharedSettings> read_gnss_shared(const mission::TableReader& document,

@@ -16,7 +16,7 @@ struct RangeFinderSensor : mission::SensorSettings {
 
 extern const SensorKind kRangeFinder;
 
-// In range_evaluation.cpp.
+// In range_report.cpp.
 [[nodiscard]] std::unique_ptr<Evaluation> evaluate_ranges(const mission::Sensor& sensor,
                                                           const EvaluationContext& context);
 

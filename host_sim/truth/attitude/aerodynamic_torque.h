@@ -14,7 +14,7 @@
 
 namespace vbar::truth {
 
-/// The air at a spacecraft. Its discontinuities have dates, as those of a torque have (torque.h).
+/// The air at a spacecraft. Its discontinuities have dates, as those of a torque have.
 class Air {
  public:
   Air() = default;

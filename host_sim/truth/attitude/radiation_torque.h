@@ -11,7 +11,7 @@
 
 namespace vbar::truth {
 
-/// Visible fraction of the Sun. Where it jumps it has an edge, as a torque has (torque.h).
+/// Visible fraction of the Sun. Where it jumps it has an edge, as a torque has.
 class Sunlight {
  public:
   Sunlight() = default;

@@ -26,7 +26,7 @@ struct GravityCoefficients {
   double s_nm(int n, int m) const { return n <= degree ? s[index(n, m)] : 0.0; }
 };
 
-/// Reads the model up to `degree` from a file in any of gravity_formats.h. That of data/gravity: '#' comments; lines
+/// Reads the model up to `degree` from a file in any of gravity_formats(). That of data/gravity: '#' comments; lines
 /// "model", "gm_m3ps2", "radius_m", "max_degree", "tide_system" with a value; "coefficients"; then "n m C S" for every
 /// 0 <= m <= n <= max_degree in order; "end".
 /// Throws std::runtime_error, naming file, line and what is expected, if the file is damaged or truncated (the whole

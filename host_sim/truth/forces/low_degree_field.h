@@ -1,6 +1,6 @@
 #pragma once
 // A gravity field of degrees 2 to 4 whose coefficients change from call to call, as those of the tides do: small enough
-// to be summed term by term, where gravity_field.h prepares its series once.
+// to be summed term by term, where GravityField prepares its series once.
 
 #include "fsw/core/types.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 // A camera as a packet source: an image every period, taken on a thread of its own while the simulation goes on,
-// because it leaves the camera only when it has been read out. An ImageTaker produces it (image_taker.h).
+// because it leaves the camera only when it has been read out. An ImageTaker produces it (image_maker.h).
 
 #include <atomic>
 #include <memory>
@@ -31,7 +31,7 @@ class CameraSensor final : public PacketSource {
     std::chrono::milliseconds timeout = std::chrono::minutes(5);  ///< on the wall, for one image
   };
 
-  /// Throws std::invalid_argument if a recipe cannot hold the models of the mount (image_recipe.h).
+  /// Throws std::invalid_argument if a recipe cannot hold the models of the mount (logged_image.h).
   CameraSensor(const Settings& settings, std::unique_ptr<ImageTaker> taker);
   /// The digital camera. `renderer` is called on the sensor's own thread.
   CameraSensor(const Settings& settings, Renderer renderer)

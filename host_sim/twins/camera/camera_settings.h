@@ -54,7 +54,7 @@ struct CameraSettings {
   double exposure_s = 0.2;
   double zero_magnitude_photons =
       3.1e10;  ///< flux of a star of V = 0, B-V = 0 outside the atmosphere, 1/(m^2 s); photometry.h
-  std::filesystem::path star_catalogue_file{"stars/hipparcos_v8.csv"};  ///< seen from the data folder; star_catalogue.h
+  std::filesystem::path star_catalogue_file{"stars/hipparcos_v8.csv"};  ///< relative to the data folder; star_sky.h
 
   [[nodiscard]] double focal_length_px() const { return 1e3 * optics.focal_length_mm / detector.pixel_pitch_um; }
   /// Area of the entrance pupil, m^2.

@@ -2,7 +2,7 @@
 // The detector: from expected photo-electrons to the numbers that are read.
 //
 //   charge = Poisson(response * photo-electrons + dark electrons)      shot noise of light and dark current together
-//   charge beyond the full well spills to the neighbours or is drained (blooming.h)
+//   charge beyond the full well spills to the neighbours or is drained (bloom())
 //   DN     = round(offset + gain * (charge + read noise)), cut off at 0 and 2^bits - 1
 //
 // Response and dark current are of the pixel (fixed pattern, hot pixels); their values are drawn from the seed and are

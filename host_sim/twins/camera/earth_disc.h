@@ -1,7 +1,7 @@
 #pragma once
 // The Earth in the view of a camera: occultation and radiance. An ellipsoid (WGS 84, its pole along z of GCRF as in
-// truth/forces/shadow.h) without atmosphere or clouds, a Lambert surface of albedo 0.3 in the Sun's light, dark at
-// night.
+// truth/forces/radiation_pressure.h) without atmosphere or clouds, a Lambert surface of albedo 0.3 in the Sun's light,
+// dark at night.
 
 #include "fsw/core/types.h"
 

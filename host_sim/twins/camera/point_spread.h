@@ -23,7 +23,7 @@ class PointSpread {
   /// Adds many points that move alike and belong together: an object, a disc. They are first gathered on a grid, of a
   /// 64th of their extent or a third of the spread, whichever is less, by bilinear weights: sums and centroids stay
   /// exact, and nothing changes as an object grows from a point to many pixels. Beyond kWide_px the grid divides pixels
-  /// evenly (wide_spread.h).
+  /// evenly (extended_psf.h).
   void add(std::span<const ImagePoint> points, const fsw::Vector2& smear_px, PhotonImage& image);
 
   static constexpr double kWide_px = 96.0;

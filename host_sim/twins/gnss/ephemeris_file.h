@@ -1,5 +1,5 @@
 #pragma once
-// Reads broadcast ephemerides: those of data/gps, RINEX navigation files (formats/ephemeris_formats.h).
+// Reads broadcast ephemerides: those of data/gps, RINEX navigation files (ephemeris_formats()).
 
 #include <filesystem>
 #include <string>

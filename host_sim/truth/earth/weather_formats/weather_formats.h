@@ -1,6 +1,6 @@
 #pragma once
 // The formats of space weather that are read as published. Each is recognised by its contents, whatever the name of the
-// file; each has its file here and its line in the list.
+// file; each has its functions here and its line in the list.
 
 #include <optional>
 #include <span>

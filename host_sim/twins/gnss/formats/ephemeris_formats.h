@@ -1,6 +1,6 @@
 #pragma once
 // The formats of broadcast ephemerides that are read as published. Each is recognised by its contents; each has its
-// file here and its line in the list.
+// functions here and its line in the list.
 
 #include <span>
 #include <string>
