@@ -12,9 +12,9 @@
 
 namespace vbar::mission {
 
-/// A file of the data folder, or, if it begins with "./" or "../", relative to the mission file; an absolute path stays
-/// as it is, and so does one of the `words`, which name no file. On the command line (--set) a relative path is one
-/// from the working directory, if that has such a file. Throws MissionError for an empty text.
+/// Returns a file of the data folder or, if it begins with "./" or "../", relative to the mission file; an absolute
+/// path stays as it is, and so does one of the `words`, which name no file. On the command line (--set) a relative path
+/// is one from the working directory, if that has such a file. Throws MissionError for an empty text.
 [[nodiscard]] std::filesystem::path data_file(const TableReader& section, std::string_view key,
                                               const std::filesystem::path& default_value, const Mission& mission,
                                               std::span<const std::string_view> words = {});
@@ -23,11 +23,11 @@ namespace vbar::mission {
 [[nodiscard]] std::vector<std::filesystem::path> data_files(const TableReader& section, std::string_view key,
                                                             const Mission& mission);
 
-/// Whether a text is a path relative to the file that states it.
+/// Returns whether a text is a path relative to the file that states it.
 [[nodiscard]] bool is_seen_from_file(std::string_view text);
 
-/// The file of this name in the working directory, absolute, for a key that was set on the command line; empty where
-/// there is none.
+/// Returns the file of this name in the working directory, absolute, for a key that was set on the command line; empty
+/// where there is none.
 [[nodiscard]] std::filesystem::path file_on_command_line(const TableReader& section, std::string_view key,
                                                          const std::string& text);
 

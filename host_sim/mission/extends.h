@@ -8,7 +8,8 @@
 
 namespace vbar::mission {
 
-/// A mission that does not state its name has that of its file: letters that no name can have become '_'.
+/// Returns the name of a mission that does not state it: that of its file, in which letters that no name can have
+/// become '_'.
 [[nodiscard]] std::string name_of_file(const std::filesystem::path& file);
 
 /// Replaces `document`, if it has the key `extends`, by the file that this key names, with `document` put over that
@@ -20,8 +21,8 @@ namespace vbar::mission {
 /// than four files.
 void put_over_extended(toml::table& document, const std::filesystem::path& file);
 
-/// The file without dependence on others: its own text if it extends nothing, else its merged content, in TOML
-/// without comments. Throws MissionError as put_over_extended and for invalid TOML.
+/// Returns the text of a file without dependence on others: its own text if it extends nothing, else its merged
+/// content, in TOML without comments. Throws MissionError as put_over_extended and for invalid TOML.
 [[nodiscard]] std::string whole_mission_text(const std::filesystem::path& file);
 
 }  // namespace vbar::mission

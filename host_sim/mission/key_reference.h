@@ -23,7 +23,7 @@ struct DescribedKey {
 [[nodiscard]] std::vector<DescribedKey> key_reference(const std::filesystem::path& folder,
                                                       const Installation& installation);
 
-/// The path of a reader's table without names and numbers of elements: "spacecraft.servicer.sensors.camera" and
+/// Returns the path of a reader's table without names and numbers of elements: "spacecraft.servicer.sensors.camera" and
 /// "waypoint.3" are "spacecraft.sensors.camera" and "waypoint".
 [[nodiscard]] std::string table_of_path(const std::string& path);
 

@@ -172,7 +172,7 @@ struct Fault {
   static constexpr fsw::GpsTime kNever{std::numeric_limits<std::int64_t>::max()};
 
   [[nodiscard]] bool has_begun(fsw::GpsTime time) const { return time >= begin && begin != kNever; }
-  /// False for a fault of an instant, which has a duration of 0.
+  /// Whether the fault is present. False for a fault of an instant, which has a duration of 0.
   [[nodiscard]] bool is_present(fsw::GpsTime time) const {
     return has_begun(time) && (!duration || time < begin + *duration);
   }
@@ -199,11 +199,11 @@ struct Spacecraft {
   std::vector<Sensor> sensors;  ///< kinds in the order of the program's list, the sensors of a kind by name
   std::optional<Thruster> thruster;
 
-  /// The spacecraft that its sensors navigate to; empty if it has none.
+  /// Returns the spacecraft that its sensors navigate to; empty if it has none.
   [[nodiscard]] const std::string& observes() const;
 };
 
-/// Settings of the first sensor of a kind, by the type of its settings; null if there is none.
+/// Returns the settings of the first sensor of a kind, by the type of its settings; null if there is none.
 template <class Settings>
 [[nodiscard]] const Settings* find_settings(const Spacecraft& spacecraft) {
   for (const Sensor& sensor : spacecraft.sensors)
@@ -300,16 +300,16 @@ struct Mission {
   [[nodiscard]] fsw::GpsTime start_time() const { return epoch + start; }
   [[nodiscard]] fsw::GpsTime end_time() const { return epoch + start + duration; }
 
-  /// Whether any spacecraft carries flight software.
+  /// Returns whether any spacecraft carries flight software.
   [[nodiscard]] bool flies() const;
 
-  /// Null for an unknown name or index.
+  /// Returns the element with a name or index; null for an unknown one.
   [[nodiscard]] const Spacecraft* find_spacecraft(std::string_view spacecraft_name) const;
   [[nodiscard]] const Waypoint* find_waypoint(int index) const;
 };
 
-/// What a kind of sensor has read for all of its sensors, by the type of those settings. Throws std::logic_error if the
-/// mission was loaded without that kind.
+/// Returns the settings that a kind of sensor has read for all its sensors, by the type of those settings. Throws
+/// std::logic_error if the mission was loaded without that kind.
 template <class Settings>
 [[nodiscard]] const Settings& shared_settings(const Mission& mission) {
   for (const auto& shared : mission.shared)
@@ -317,7 +317,7 @@ template <class Settings>
   throw std::logic_error("the mission was loaded without a kind of sensor that is asked for");
 }
 
-/// The names that mission files and summaries use (the constants below list all).
+/// Returns the names that mission files and summaries use (the constants below list all).
 [[nodiscard]] std::string_view name_of(FaultKind kind);
 [[nodiscard]] std::string_view name_of(FlightTarget target);
 [[nodiscard]] std::string_view name_of(FlightLink link);

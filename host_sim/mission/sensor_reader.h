@@ -55,7 +55,7 @@ struct Installation {
   std::vector<const engine::WallClockSource*> clocks;  ///< the first one is the default
 };
 
-/// The clock that the mission names, which the loader has checked.
+/// Makes the clock that the mission names, which the loader has checked.
 [[nodiscard]] std::unique_ptr<engine::WallClock> make_wall_clock(const Mission& mission,
                                                                  const Installation& installation);
 

@@ -19,8 +19,8 @@ enum class Match {
 /// follow each other in that order. An empty search matches all.
 [[nodiscard]] Match match_of(std::string_view searched, std::string_view text);
 
-/// " (did you mean WORD?)" for a search without a result, of the names searched, their parts between dots and spaces,
-/// and the words of these; empty without a near one.
+/// Returns " (did you mean WORD?)" for a search without a result, of the names searched, their parts between dots and
+/// spaces, and the words of these; empty without a near one.
 [[nodiscard]] std::string word_meant(std::string_view searched, const std::vector<std::string>& names);
 
 }  // namespace vbar::mission

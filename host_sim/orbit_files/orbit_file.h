@@ -80,14 +80,14 @@ struct OrbitFormat {
 
 [[nodiscard]] std::span<const OrbitFormat> orbit_formats();
 
-/// The tracks of a text in any of the formats, which may begin with a byte order mark. Throws files::FormatError; for
-/// an unknown format it names all.
+/// Returns the tracks of a text in any of the formats, which may begin with a byte order mark. Throws
+/// files::FormatError; for an unknown format it names all.
 [[nodiscard]] OrbitFile read_orbits(std::string_view text, const std::string& file);
 
 /// Reads the tracks of a file, which becomes part of the run's provenance. Throws std::runtime_error.
 [[nodiscard]] OrbitFile load_orbits(const std::filesystem::path& file);
 
-/// The tracks of one object: that named `object`, or, if `object` is empty, the only one of the file. Throws
+/// Returns the tracks of one object: that named `object`, or, if `object` is empty, the only one of the file. Throws
 /// std::runtime_error that names the objects of the file.
 [[nodiscard]] OrbitFile tracks_of(const OrbitFile& file, std::string_view object);
 
@@ -106,10 +106,10 @@ struct FramedState {
   std::optional<InterpolationCheck> interpolation;  ///< none for a state of the file itself
 };
 
-/// State at `time` of a file of one object, interpolated by the rule that the file publishes, else with velocities by
-/// the Hermite polynomial through four states, without them by that of degree 9 through ten positions. Throws
-/// std::out_of_range that names file, time and reason: outside the states or the useable time, in a gap, or an error
-/// that may exceed kMaxInterpolationErrorM.
+/// Returns the state at `time` of a file of one object, interpolated by the rule that the file publishes, else with
+/// velocities by the Hermite polynomial through four states, without them by that of degree 9 through ten positions.
+/// Throws std::out_of_range that names file, time and reason: outside the states or the useable time, in a gap, or an
+/// error that may exceed kMaxInterpolationErrorM.
 [[nodiscard]] FramedState state_at(const OrbitFile& file, fsw::GpsTime time);
 
 }  // namespace vbar::orbit_files

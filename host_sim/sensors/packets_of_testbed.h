@@ -21,9 +21,9 @@ struct PacketLimits {
   FaultOfValue fault_of_value = {};
 };
 
-/// The source of a sensor's packets about `carrier`, if a testbed provides whole packets: a sensor in another process.
-/// Null for any other source.
-/// `kind`: that of the sensor. Throws std::runtime_error if the testbed cannot, and without a run.
+/// Makes the source of a sensor's packets about `carrier`, if a testbed provides whole packets: a sensor in another
+/// process. Null for any other source. `kind`: that of the sensor. Throws std::runtime_error if the testbed cannot, and
+/// without a run.
 [[nodiscard]] std::unique_ptr<twins::PacketSource> packets_of_testbed(const mission::Sensor& sensor,
                                                                       const SensorKind& kind,
                                                                       const MakeContext& context,

@@ -56,14 +56,14 @@ struct TelecommandContext {
   const mission::Spacecraft& servicer;  ///< carries the flight software
   std::filesystem::path data_directory;
   const truth::EarthOrientationSeries& earth_orientation;
-  /// True state of a spacecraft at the start, from which a-priori knowledge is drawn.
+  /// Returns the true state of a spacecraft at the start, from which a-priori knowledge is drawn.
   std::function<fsw::orbit::CartesianState(std::string_view spacecraft)> state_at_start;
 };
 
 /// Objects that several sources of one run share, by name: the sky over all receivers.
 class SharedObjects {
  public:
-  /// The object of that name, which the first caller makes.
+  /// Returns the object of that name, which the first caller makes.
   template <class Object, class Make>
   std::shared_ptr<Object> get(const std::string& name, const Make& make) {
     std::any& object = objects_[name];
@@ -114,12 +114,12 @@ struct SensorKind : mission::SensorReader {
                                                          twins::ImagesOfLog&& images) = nullptr;
 };
 
-/// "servicer/gnss"
+/// Returns the name of a source: "servicer/gnss".
 [[nodiscard]] inline std::string source_name(const mission::Spacecraft& carrier, const mission::Sensor& sensor) {
   return carrier.name + "/" + sensor.name;
 }
 
-/// Number of the sensor among those of its kind on the spacecraft: the unit in packet headers.
+/// Returns the number of the sensor among those of its kind on the spacecraft: the unit in packet headers.
 [[nodiscard]] inline std::uint8_t unit_of(const mission::Sensor& sensor, const mission::Spacecraft& carrier) {
   std::uint8_t unit = 0;
   for (const mission::Sensor& other : carrier.sensors) {
@@ -129,7 +129,7 @@ struct SensorKind : mission::SensorReader {
   return unit;
 }
 
-/// The settings of a sensor of the kind whose settings are `Settings`.
+/// Returns the settings of a sensor of the kind whose settings are `Settings`.
 template <class Settings>
 const Settings& settings_of(const mission::Sensor& sensor) {
   return dynamic_cast<const Settings&>(*sensor.settings);

@@ -12,8 +12,8 @@
 
 namespace vbar::training {
 
-/// The close-range camera with its binning: TRON's lens, pixels in groups of 2 x 2 (data/cameras/tron.toml). Its
-/// exposure is kNominalExposureS.
+/// Returns the close-range camera with its binning: TRON's lens, pixels in groups of 2 x 2 (data/cameras/tron.toml).
+/// Its exposure is kNominalExposureS.
 [[nodiscard]] twins::camera::CameraSettings close_range_camera(const std::filesystem::path& data_directory);
 
 /// A white surface that faces the Sun and the camera fills 60 % of the full well.

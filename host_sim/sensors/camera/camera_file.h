@@ -21,7 +21,7 @@ struct CameraFile {
   [[nodiscard]] twins::camera::CameraSettings settings() const;
 };
 
-/// The camera in the file. What a file leaves out is the Optical Stimulator's. Throws MissionError.
+/// Loads the camera in the file. What a file leaves out is the Optical Stimulator's. Throws MissionError.
 [[nodiscard]] CameraFile load_camera(const std::filesystem::path& file);
 
 /// The keys of a camera that a file and a mission have in common, over what `camera` holds already: exposure_s,

@@ -27,21 +27,21 @@ struct CameraSensor : mission::SensorSettings {
 
   [[nodiscard]] bool has_use(std::int32_t use) const { return (navigation & use) != 0; }
   [[nodiscard]] bool is_used() const { return navigation != 0; }
-  /// Bearings while the target is a point, keypoints once it is resolved.
+  /// Whether navigation uses its images for bearings while the target is a point, keypoints once it is resolved.
   [[nodiscard]] bool changes_use() const { return has_use(kBearings) && has_use(kKeypoints); }
 
   static constexpr std::int32_t kBearings = vbar::navigation_configuration::kUseBearings;
   static constexpr std::int32_t kKeypoints = vbar::navigation_configuration::kUseKeypoints;
 };
 
-/// The camera of that unit whose images navigation uses, and the first with that use (CameraSensor::kBearings,
-/// kKeypoints); null if there is none.
+/// Returns the camera of that unit whose images navigation uses, and the first one with that use
+/// (CameraSensor::kBearings, kKeypoints); null if there is none.
 [[nodiscard]] const CameraSensor* navigation_camera(const mission::Spacecraft& carrier, std::uint8_t unit = 0);
 [[nodiscard]] const CameraSensor* first_camera_for(std::int32_t use, const mission::Spacecraft& carrier);
 
-/// The unit in packet headers: cameras whose images navigation uses come first, in the order of the mission; the flight
-/// software does not know the others, from packets::kCameras on. By the name of the sensor: its settings may be those
-/// of a calibrated copy.
+/// Returns the unit in packet headers. Cameras whose images navigation uses come first, in the order of the mission;
+/// the flight software does not know the others, from packets::kCameras on. By the name of the sensor: its settings may
+/// be those of a calibrated copy.
 [[nodiscard]] std::uint8_t camera_unit(const mission::Sensor& sensor, const mission::Spacecraft& carrier);
 
 /// [navigation.angles_only] and [navigation.pose]: what does not depend on camera and target.
@@ -65,7 +65,7 @@ std::shared_ptr<const mission::SharedSettings> read_camera_shared(const mission:
 void add_camera_telecommands(const mission::Sensor& sensor, const TelecommandContext& context,
                              Telecommands& telecommands);
 
-/// The camera as calibrated on the ground: without error.
+/// Returns the camera as calibrated on the ground: without error.
 [[nodiscard]] vbar::camera_configuration camera_configuration_of(const CameraSensor& camera);
 
 /// Returns the target of the camera as configured on the ground: keypoints of its model, inertia of its body. Throws

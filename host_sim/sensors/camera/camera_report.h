@@ -38,7 +38,7 @@ struct PoseFigures {
   int without_truth = 0;  ///< images, not evaluated
 };
 
-/// None if the run has no such images.
+/// Returns the counts and the figures of a run; none if the run has no such images.
 [[nodiscard]] std::optional<ImageCounts> image_counts(const report::RunRecord& record);
 [[nodiscard]] std::optional<PoseFigures> pose_figures(const report::RunRecord& record);
 
@@ -46,22 +46,24 @@ struct PoseFigures {
 /// "pose", and the summary's own figures of attitude and bearing.
 void summarise_images(const report::RunRecord& record, report::Summary& summary);
 
-/// NEES of the orbit; NIS of the bearings or of the keypoints that the filter processed.
+/// Returns the NEES of the orbit; NIS of the bearings or of the keypoints that the filter processed.
 [[nodiscard]] std::vector<report::ConsistencyFigure> image_consistency(const report::RunRecord& record);
 
-/// Published figures of experiments 1 and 2; none for a run that does not navigate by the same measurements to the same
-/// waypoints (camera_figures.cpp).
+/// Returns the published figures of experiments 1 and 2; none for a run that does not navigate by the same measurements
+/// to the same waypoints (camera_figures.cpp).
 [[nodiscard]] std::vector<report::PaperColumn> camera_paper_columns(const report::RunRecord& record);
 
 // In section_angles_only.cpp.
-/// Errors at the waypoints and delta-v as HTML; the paper's figures below those of a run that meets its waypoints.
+/// Returns the errors at the waypoints and delta-v as HTML; the paper's figures below those of a run that meets its
+/// waypoints.
 [[nodiscard]] std::string angles_only_performance(const report::RunRecord& record);
 
-/// Angles-only navigation: beside the paper, bearings, star attitude, range, pictures (section_angles_only.cpp).
+/// Makes the section of angles-only navigation: beside the paper, bearings, star attitude, range, pictures
+/// (section_angles_only.cpp).
 [[nodiscard]] report::Section angles_only_section(const report::RunRecord& record);
 
-/// Navigation by the pose network: beside the paper, attitude, poses of single images, keypoints, pictures
-/// (section_pose.cpp).
+/// Makes the section of navigation by the pose network: beside the paper, attitude, poses of single images, keypoints,
+/// pictures (section_pose.cpp).
 [[nodiscard]] report::Section pose_section(const report::RunRecord& record);
 
 }  // namespace vbar::sensors

@@ -61,7 +61,7 @@ class GalleryKeeper {
   };
 
   [[nodiscard]] bool may_be_wanted(fsw::GpsTime now) const;
-  /// The first one at or after an exposure, if the exposure is among the last before it.
+  /// Returns the first moment at or after an exposure, if the exposure is among the last before it.
   [[nodiscard]] std::optional<fsw::GpsTime> moment_of(fsw::GpsTime exposure) const;
   [[nodiscard]] Candidate candidate(const ImageFindings& found, fsw::GpsTime moment) const;
   [[nodiscard]] report::GalleryImage picture(const Candidate& candidate) const;

@@ -18,7 +18,8 @@ inline constexpr int kCropPicturePx = 512;
   return image_width + kGap;
 }
 
-/// A PNG; noise is black in it. Without heatmaps if `network` has no weights, without a crop if it cannot be cut out.
+/// Returns a PNG in which noise is black. Without heatmaps if `network` has no weights, without a crop if it cannot be
+/// cut out.
 [[nodiscard]] std::vector<std::uint8_t> pose_picture(const fsw::imaging::ImageView& image, const telemetry_pose& pose,
                                                      double dark_level_dn, double noise_dn,
                                                      fsw::network::KeypointNetwork& network);

@@ -48,7 +48,7 @@ class DifferenceNoise {
   /// Epochs in order of time.
   void add(const ResidualEpoch& epoch);
 
-  /// One row for each signal that was measured.
+  /// Returns one row for each signal that was measured.
   [[nodiscard]] std::vector<SignalNoiseRow> rows() const;
 
  private:
@@ -78,7 +78,7 @@ class DifferenceNoise {
   std::array<SignalSums, fsw::gnss::kSignals> signals_{};
 };
 
-/// "GPS L1"
+/// Returns the name of a signal: "GPS L1".
 [[nodiscard]] const char* name_of(fsw::gnss::Signal signal);
 
 }  // namespace vbar::sensors

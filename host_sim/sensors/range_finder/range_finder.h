@@ -27,11 +27,12 @@ struct LineOfSight {
   double off_boresight_rad = 0.0;
 };
 
-/// None if the truth lacks a spacecraft or the servicer's attitude.
+/// Returns the line of sight to the target; none if the truth lacks a spacecraft or the servicer's attitude.
 [[nodiscard]] std::optional<LineOfSight> line_of_sight(const twins::TruthSnapshot& truth, const std::string& servicer,
                                                        const std::string& target, const fsw::Vector3& boresight_body);
 
-/// Inside the field of view and the limits of the range, these included. Both are of the centre of mass.
+/// Whether the target is inside the field of view and the limits of the range, these included. Both are of the centre
+/// of mass.
 [[nodiscard]] bool is_measurable(const LineOfSight& sight, const RangeFinderSettings& settings);
 
 class RangeFinder final : public twins::PacketSource {
@@ -47,13 +48,13 @@ class RangeFinder final : public twins::PacketSource {
 
   [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override;
 
-  /// One range_measurement packet; none if the target is not measurable. kFailed without the truth it needs.
+  /// Measures one range_measurement packet; none if the target is not measurable. kFailed without the truth it needs.
   twins::Measurement measure(const twins::TruthSnapshot& truth) override;
 
   [[nodiscard]] bool truth_is_compared() const override { return true; }
 
  private:
-  /// Belongs to the epoch, whatever was measured before.
+  /// Returns the noise of an epoch, which does not depend on earlier measurements.
   [[nodiscard]] double noise_m(fsw::GpsTime time) const;
 
   RangeFinderSettings settings_;
