@@ -37,7 +37,7 @@ struct DenseStep {
   double size = 0.0;   ///< its length, negative if time runs backwards
   State c[5];          ///< Hairer et al., eq. II.6.13 ff.
 
-  /// The solution at `time`; meant for times within the step.
+  /// Returns the solution at `time`; meant for times within the step.
   State operator()(double time) const {
     const double s = (time - start) / size;
     const double r = 1.0 - s;
@@ -147,8 +147,8 @@ class Dopri5 {
     accept(time, h, try_step(h));
   }
 
-  /// One step, ended at the first sign change of g(t, y) inside it, if any: returns whether there was one. The step is
-  /// searched at `samples` equal parts, and the change found to `resolution`.
+  /// Takes one step, ended at the first sign change of g(t, y) inside it, if any: returns whether there was one. The
+  /// step is searched at `samples` equal parts, and the change found to `resolution`.
   template <class EventFunction>
   bool step_to_event(const EventFunction& g, double limit, int samples, double resolution) {
     step(limit);
@@ -198,7 +198,7 @@ class Dopri5 {
     return s;
   }
 
-  /// Root mean square over components of error estimate over tolerance.
+  /// Returns the root mean square over components of error estimate over tolerance.
   double error_norm(double h, const Stages& s) const {
     const State error = h * (71.0 / 57600.0 * rate_ - 71.0 / 16695.0 * s.k3 + 71.0 / 1920.0 * s.k4 -
                              17253.0 / 339200.0 * s.k5 + 22.0 / 525.0 * s.k6 - 1.0 / 40.0 * s.k7);
@@ -231,7 +231,7 @@ class Dopri5 {
     ++statistics_.accepted_steps;
   }
 
-  /// Length of the first step: Hairer et al., section II.4, "Starting Step Size".
+  /// Returns the length of the first step: Hairer et al., section II.4, "Starting Step Size".
   double first_step() {
     const auto norm = [&](const State& v) {
       double sum = 0.0;

@@ -35,8 +35,8 @@ ForceData load_force_data(const TruthSettings& settings);
 /// loaded. Throws as load_force_data().
 void load_atmosphere(const TruthSettings& settings, ForceData& data);
 
-/// The forces on one spacecraft, gravity first. Throws std::invalid_argument, naming spacecraft, force and property, if
-/// a force needs a mass, an area or a coefficient that the spacecraft does not have.
+/// Makes the forces on one spacecraft, gravity first. Throws std::invalid_argument, naming spacecraft, force and
+/// property, if a force needs a mass, an area or a coefficient that the spacecraft does not have.
 std::vector<std::unique_ptr<Force>> make_forces(const TruthSettings& settings, const ForceData& data,
                                                 const SpacecraftSettings& spacecraft);
 

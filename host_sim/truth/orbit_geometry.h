@@ -22,13 +22,13 @@ struct OrbitGeometry {
   double sin_i = 0.0;
 };
 
-/// Geometry of osculating elements under `gm` (m^3/s^2). Throws std::domain_error unless the orbit is an ellipse (a >
-/// 0, e < 1).
+/// Returns the geometry of osculating elements under `gm` (m^3/s^2). Throws std::domain_error unless the orbit is an
+/// ellipse (a > 0, e < 1).
 OrbitGeometry orbit_geometry(const fsw::orbit::QnsElements& osculating, double gm);
 
-/// Osculating elements of an ECI state; raan and u in (-pi, pi]. Throws std::domain_error for an orbit that is not an
-/// ellipse (parabolic, hyperbolic, rectilinear), that is equatorial (inclination within 1e-8 rad of 0 or pi, where the
-/// elements are singular) or not finite.
+/// Returns the osculating elements of an ECI state; raan and u in (-pi, pi]. Throws std::domain_error for an orbit that
+/// is not an ellipse (parabolic, hyperbolic, rectilinear), that is equatorial (inclination within 1e-8 rad of 0 or pi,
+/// where the elements are singular) or not finite.
 fsw::orbit::QnsElements elements_from_cartesian(const fsw::orbit::CartesianState& state, double gm);
 
 }  // namespace vbar::truth

@@ -51,19 +51,19 @@ class SpacecraftDynamics {
   SpacecraftDynamics(std::string name, double gm, double earth_radius, EarthRotation earth_rotation,
                      std::vector<std::unique_ptr<Force>> forces);
 
-  /// Rates of the osculating elements [a, ex, ey, i, raan, u] `seconds` after the epoch. Throws std::domain_error, with
-  /// the date, if the spacecraft is below kReentryAltitude or its orbit is not an ellipse.
+  /// Returns the rates of the osculating elements [a, ex, ey, i, raan, u] `seconds` after the epoch. Throws
+  /// std::domain_error, with the date, if the spacecraft is below kReentryAltitude or its orbit is not an ellipse.
   fsw::Vector6 element_rates(double seconds, const fsw::Vector6& elements);
 
-  /// Sum of all forces, m/s^2 in ECI, beside the point mass: what a Cartesian integration would use. Throws as
-  /// element_rates() on re-entry.
+  /// Returns the sum of all forces, m/s^2 in ECI, beside the point mass: what a Cartesian integration would use. Throws
+  /// as element_rates() on re-entry.
   fsw::Vector3 perturbation_eci(double seconds, const fsw::orbit::CartesianState& state);
 
-  /// The shares of the sum, in the forces' order, in the regime of that very instant; the regime set is left
+  /// Returns the shares of the sum, in the forces' order, in the regime of that very instant; the regime set is left
   /// unchanged.
   std::vector<ForceAcceleration> accelerations(double seconds, const fsw::orbit::CartesianState& state);
 
-  /// The edges of all forces, numbered consecutively, and their values.
+  /// Number of the edges of all forces, which are numbered consecutively, and the value of one.
   int edge_count() const { return static_cast<int>(edges_.size()); }
   double edge(int index, double seconds, const fsw::orbit::CartesianState& state);
 
@@ -79,15 +79,15 @@ class SpacecraftDynamics {
   /// From here on the motion is in the interval that begins at a jump.
   void enter_interval(double seconds);
 
-  /// The first date after `seconds` at which a force jumps by itself.
+  /// Returns the first date after `seconds` at which a force jumps by itself.
   double next_jump_after(double seconds) const;
 
-  /// Inputs of forces and torques at an instant. The Sun and the Moon only if a force needs them or
+  /// Returns the inputs of forces and torques at an instant. The Sun and the Moon only if a force needs them or
   /// provide_sun_and_moon() was called.
   ForceInput input_at(double seconds, const fsw::orbit::CartesianState& state);
   void provide_sun_and_moon() { needs_sun_and_moon_ = true; }
 
-  /// Geocentric position of the Sun, m.
+  /// Returns the geocentric position of the Sun, m.
   fsw::Vector3 sun_eci_at(double seconds);
 
   /// Measures the time of each force from now on (which adds some 50 ns per force), or stops measuring.
@@ -96,7 +96,7 @@ class SpacecraftDynamics {
 
   const std::string& name() const { return name_; }
   double gm() const { return gm_; }
-  /// UTC of an instant, for messages.
+  /// Returns the UTC of an instant, for messages.
   std::string date(double seconds) const;
 
  private:

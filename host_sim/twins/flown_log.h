@@ -37,14 +37,14 @@ class FlownLog {
   /// damage elsewhere, and std::runtime_error that names a file that cannot be read.
   explicit FlownLog(const std::filesystem::path& file);
 
-  /// Events before the damage or cut, the end excepted.
+  /// Returns the number of events before the damage or cut, the end excepted.
   [[nodiscard]] std::uint64_t events() const { return events_; }
   /// Number of steps that the run began, from 0 on, and the time of the last one.
   [[nodiscard]] std::uint32_t steps() const { return steps_; }
   [[nodiscard]] fsw::GpsTime time() const { return time_; }
-  /// The run closed it.
+  /// Whether the run closed the log.
   [[nodiscard]] bool has_end() const { return has_end_; }
-  /// The byte from which on it is damaged or cut.
+  /// Returns the byte from which on it is damaged or cut.
   [[nodiscard]] std::optional<std::uint64_t> damaged_from() const { return damaged_from_; }
 
   /// Nothing from this time on is compared.
@@ -54,7 +54,7 @@ class FlownLog {
   /// whose checksum is wrong.
   void compare(fsw::GpsTime time, const LcmEvent& flown);
 
-  /// Everything that was to be compared has been, and was identical.
+  /// Whether everything that was to be compared has been, and was identical.
   [[nodiscard]] bool is_over() const { return is_over_; }
 
  private:

@@ -38,8 +38,9 @@ class GnssSensor final : public PacketSource {
 
   [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override;
 
-  /// The packets of one epoch: receiver bytes in pieces, and the attitude. No packets if the crosslink loses them,
-  /// which applies to all of them. kFailed if the truth lacks the spacecraft or its attitude, or the receiver fails.
+  /// Measures the packets of one epoch: receiver bytes in pieces, and the attitude. No packets if the crosslink loses
+  /// them, which applies to all of them. kFailed if the truth lacks the spacecraft or its attitude, or the receiver
+  /// fails.
   Measurement measure(const TruthSnapshot& truth) override;
 
   [[nodiscard]] const gnss::ReceiverBytes& receiver() const { return *receiver_; }

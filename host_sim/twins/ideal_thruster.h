@@ -21,7 +21,8 @@ class IdealThruster final : public Actuator {
   /// `stream` is the thruster's own. The errors of a burn are drawn by its maneuver_id, independently of other burns.
   IdealThruster(const Settings& settings, const engine::RandomStream& stream);
 
-  /// Without errors the executed impulse is the commanded one, bit for bit. Notes: the errors of the burn.
+  /// Executes a burn. Without errors the executed impulse is the commanded one, bit for bit. Notes: the errors of the
+  /// burn.
   Execution execute(const vbar::maneuver_command& command, fsw::GpsTime burn_time, fsw::GpsTime now) override;
 
  private:

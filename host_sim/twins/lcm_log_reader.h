@@ -31,14 +31,15 @@ class LcmLogReader {
   /// Throws std::runtime_error that names a file that cannot be read.
   explicit LcmLogReader(const std::filesystem::path& file);
 
-  /// Nothing at the end of the file, or where it ends within an event: then cut_short(). Throws DamagedLog.
+  /// Reads the next event; nothing at the end of the file, or where it ends within an event: then cut_short(). Throws
+  /// DamagedLog.
   [[nodiscard]] std::optional<LoggedEvent> next();
 
-  /// Whether another event may begin after the byte `offset`: whether a sync word follows.
+  /// Returns whether another event may begin after the byte `offset`: whether a sync word follows.
   [[nodiscard]] bool has_event_after(std::uint64_t offset);
 
   [[nodiscard]] bool cut_short() const { return cut_short_; }
-  /// Offset of the first byte that was not read yet.
+  /// Returns the offset of the first byte that was not read yet.
   [[nodiscard]] std::uint64_t offset() const { return offset_; }
   [[nodiscard]] std::uint64_t size() const { return size_; }
 

@@ -17,7 +17,8 @@ class PacketEncoder {
   PacketEncoder(std::uint8_t spacecraft, std::uint8_t unit, std::uint16_t sequence_count = 0)
       : spacecraft_(spacecraft), unit_(unit), sequence_count_(sequence_count) {}
 
-  /// The next packet. Empty if the message holds a NaN or an infinity; the sequence then has no gap.
+  /// Encodes the next packet. The result is empty if the message holds a NaN or an infinity; the sequence then has no
+  /// gap.
   template <class Message>
   std::optional<Packet> encode(fsw::GpsTime time, const Message& message) {
     fsw::packets::PacketHeader header;

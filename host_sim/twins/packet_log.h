@@ -50,13 +50,13 @@ struct LcmEvent {
   std::vector<std::uint8_t> data;
 };
 
-/// The record and, if the packet is whole and holds an LCM message, the message.
+/// Returns the record and, if the packet is whole and holds an LCM message, the message.
 [[nodiscard]] std::vector<LcmEvent> lcm_events_of(const PacketRecord& record);
 
 /// Is given every event of a new log except its end, before it is written. An exception leaves it out.
 using EventCheck = std::function<void(fsw::GpsTime time, const LcmEvent& event)>;
 
-/// An event's time in the log, us: that of LCM.
+/// Returns an event's time in the log, us: that of LCM.
 [[nodiscard]] std::int64_t lcm_timestamp(fsw::GpsTime time);
 
 class LcmLogWriter;
@@ -95,7 +95,7 @@ class PacketLogWriter {
 
 struct LoggedEvent;
 
-/// The record that an event of kPacketChannel or kTilesChannel holds. Throws DamagedLog, which names `file`.
+/// Returns the record that an event of kPacketChannel or kTilesChannel holds. Throws DamagedLog, which names `file`.
 [[nodiscard]] PacketRecord record_of(const LoggedEvent& event, const std::filesystem::path& file);
 
 /// Two consecutive events whose numbers are not consecutive: events between them were removed.

@@ -28,12 +28,13 @@ class RecordedLog final : public PacketSource {
   /// for a log without any such packet, and for one that lacks tiles without `make_tiles`.
   RecordedLog(const std::filesystem::path& file, const Selection& selection, const MakeTileSource& make_tiles = {});
 
-  /// Time of the next recorded delivery, or of the next exposure of a recorded image: its truth is then recorded.
+  /// Returns the time of the next recorded delivery, or of the next exposure of a recorded image: its truth is then
+  /// recorded.
   [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override;
 
-  /// The packets delivered at the epoch, byte for byte and in the recorded order, past any simulated link. kReady with
-  /// none if none were. At an exposure also its recipe and its recording, for the log of this run. Throws as
-  /// TileSource.
+  /// Returns the packets delivered at the epoch, byte for byte and in the recorded order, past any simulated link.
+  /// kReady with none if none were. At an exposure also its recipe and its recording, for the log of this run. Throws
+  /// as TileSource.
   Measurement measure(const TruthSnapshot& truth) override;
 
   /// True for the log of a camera.

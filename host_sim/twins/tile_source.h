@@ -18,13 +18,13 @@ class TileSource {
   TileSource& operator=(const TileSource&) = delete;
   virtual ~TileSource() = default;
 
-  /// The packets of a run. Throws DamagedLog for a damaged recording and std::runtime_error for a run that cannot be
-  /// restored; the message names file and image.
+  /// Returns the packets of a run. Throws DamagedLog for a damaged recording and std::runtime_error for a run that
+  /// cannot be restored; the message names file and image.
   virtual std::vector<Packet> packets_of(const TileRun& run) = 0;
 
-  /// Times of all exposures of which the log holds recipe or recording.
+  /// Returns the times of all exposures of which the log holds recipe or recording.
   [[nodiscard]] virtual std::vector<fsw::GpsTime> exposures() const = 0;
-  /// What the log holds of the exposure.
+  /// Return what the log holds of the exposure.
   [[nodiscard]] virtual std::optional<LoggedImage> recipe_at(fsw::GpsTime exposure) const = 0;
   [[nodiscard]] virtual std::optional<LoggedImage> recording_at(fsw::GpsTime exposure) const = 0;
 };

@@ -16,7 +16,7 @@ class TrueWorld {
 
   /// Not back in time.
   virtual void advance_to(fsw::GpsTime time) = 0;
-  /// At the current time.
+  /// Returns the truth at the current time.
   [[nodiscard]] virtual TruthSnapshot snapshot(TruthDetail detail) = 0;
 
   // The spacecraft that flies.
@@ -25,7 +25,7 @@ class TrueWorld {
   /// Turns it to a direction in its own RTN, a unit vector and its rate (1/s) at `time`, if its attitude is commanded.
   virtual void point(fsw::GpsTime time, const fsw::Vector3& boresight_rtn, const fsw::Vector3& boresight_rate_rtn) = 0;
 
-  /// Wall-clock time spent in it so far, s.
+  /// Returns the wall-clock time spent in it so far, s.
   [[nodiscard]] virtual double wall_s() const = 0;
 };
 

@@ -40,7 +40,7 @@ class DayExpansions {
 
   void set_day(int day_of_year, const SolarIndices& indices);
 
-  /// The annual wave that displaces the turbopause, with opposite signs in the two hemispheres: -1 to 1.
+  /// Returns the annual wave that displaces the turbopause, with opposite signs in the two hemispheres: -1 to 1.
   double turbopause_season() const { return turbopause_season_; }
 
   UpperVariations upper(const HorizontalSeries& functions, double latitude_deg) const;

@@ -16,7 +16,7 @@ class EffectiveAp {
   /// `p`: the coefficients of the quantity.
   EffectiveAp(const Nrlmsise00Tables::Upper& p, const SolarIndices& indices);
 
-  /// The decay depends on the distance of the latitude from 45 deg.
+  /// Returns the effective ap at a latitude: the decay depends on the distance of the latitude from 45 deg.
   double at(double latitude_deg) const;
 
  private:

@@ -38,7 +38,7 @@ class Thermosphere {
 
   explicit Thermosphere(const Nrlmsise00Tables& tables);
 
-  /// At kBottomKm or above.
+  /// Returns the state at kBottomKm or above.
   ThermosphereState at(double altitude_km, const LatitudeGravity& gravity,
                        const ThermosphereConditions& conditions) const;
 

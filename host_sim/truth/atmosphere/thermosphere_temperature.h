@@ -41,7 +41,7 @@ class ThermosphereTemperature {
   ThermosphereTemperature(const LatitudeGravity& gravity, const BatesProfile& bates,
                           const LowerThermosphereNodes& nodes);
 
-  /// At 72.5 km or above.
+  /// Returns the level at 72.5 km or above.
   ThermosphereLevel at(double altitude_km) const;
 
  private:

@@ -22,8 +22,8 @@ class AttitudeMotion {
   /// An impulse has changed the orbit from `seconds` on, the time of the last advance_to.
   virtual void orbit_changed(double seconds) = 0;
 
-  /// Attitude at a time for which both the attitude and the orbit are kept. Throws std::out_of_range outside, stating
-  /// what is kept; std::domain_error if the attitude is not defined there.
+  /// Returns the attitude at a time for which both the attitude and the orbit are kept. Throws std::out_of_range
+  /// outside, stating what is kept; std::domain_error if the attitude is not defined there.
   [[nodiscard]] virtual AttitudeState state_at(double seconds) const = 0;
 };
 

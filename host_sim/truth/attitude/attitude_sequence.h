@@ -20,7 +20,7 @@ struct SlewStart {
   AttitudeState to;
 };
 
-/// The attitude `elapsed_s` (0 to `slew_s`) after the beginning of a slew. `to`: the next motion at that time.
+/// Returns the attitude `elapsed_s` (0 to `slew_s`) after the beginning of a slew. `to`: the next motion at that time.
 [[nodiscard]] AttitudeState slewed_attitude(const SlewStart& start, const AttitudeState& to, double elapsed_s,
                                             double slew_s);
 

@@ -17,9 +17,9 @@ struct Facet {
   double diffuse = 0.0;                          ///< fraction of light reflected by Lambert's law
 };
 
-/// Facet of a plane convex polygon whose corners (m, body axes, from the centre of mass) go anticlockwise seen from
-/// outside. Throws std::invalid_argument for fewer than three corners, corners off their plane by more than 1e-6 of the
-/// size, or reflectivities that are negative or add to more than 1.
+/// Returns the facet of a plane convex polygon whose corners (m, body axes, from the centre of mass) go anticlockwise
+/// seen from outside. Throws std::invalid_argument for fewer than three corners, corners off their plane by more than
+/// 1e-6 of the size, or reflectivities that are negative or add to more than 1.
 Facet facet_of_polygon(const std::vector<fsw::Vector3>& corners_m, double specular, double diffuse);
 
 struct Body {

@@ -39,10 +39,10 @@ struct PointingSettings {
   fsw::Vector3 second_body = fsw::Vector3::UnitY();
 };
 
-/// Whether two body axes (of any length) span a plane: neither zero nor parallel within kLeastAngle_rad.
+/// Returns whether two body axes (of any length) span a plane: neither zero nor parallel within kLeastAngle_rad.
 [[nodiscard]] bool are_two_axes(const fsw::Vector3& a, const fsw::Vector3& b);
 
-/// Whether two directions are always the same or opposite.
+/// Returns whether two directions are always the same or opposite.
 [[nodiscard]] bool are_one_line(Direction a, Direction b);
 
 /// A pure function of the orbits: it holds no state.
@@ -56,8 +56,8 @@ class PointingProfile final : public AttitudeMotion {
   void advance_to(double /*seconds*/, double /*orbit_step_end*/) override {}
   void orbit_changed(double /*seconds*/) override {}
 
-  /// The rate is that of the directions' own motion and exact but for the Sun's (differenced over two minutes, 1e-15
-  /// rad/s). std::domain_error: the boresight lies along the second direction.
+  /// Returns attitude and rate; the rate is that of the directions' own motion and exact but for the Sun's (differenced
+  /// over two minutes, 1e-15 rad/s). Throws std::domain_error if the boresight lies along the second direction.
   [[nodiscard]] AttitudeState state_at(double seconds) const override;
 
  private:

@@ -19,7 +19,7 @@ class Sunlight {
   Sunlight& operator=(const Sunlight&) = delete;
   virtual ~Sunlight() = default;
 
-  /// 0 (eclipse) to 1 (full Sun), on the side last set.
+  /// Returns the visible fraction, 0 (eclipse) to 1 (full Sun), on the side last set.
   [[nodiscard]] virtual double fraction(const ForceInput& orbit) const = 0;
 
   [[nodiscard]] virtual int edge_count() const { return 0; }

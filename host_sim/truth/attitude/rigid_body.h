@@ -42,7 +42,8 @@ class RigidBody final : public AttitudeMotion {
 
   void orbit_changed(double seconds) override;
 
-  /// Kept: kKeptSpan_s before the last time asked for, up to the end of the last step.
+  /// Returns the attitude at a time that is kept: from kKeptSpan_s before the last time asked for, up to the end of the
+  /// last step.
   [[nodiscard]] AttitudeState state_at(double seconds) const override;
 
   [[nodiscard]] const IntegrationStatistics& statistics() const { return integrator_.statistics(); }

@@ -29,7 +29,7 @@ bool parse_numbers(std::string_view line, std::array<double, N>& numbers) {
   return at == end;
 }
 
-/// Whether the first line that is not a comment begins with "mjd_utc,".
+/// Returns whether the first line that is not a comment begins with "mjd_utc,".
 inline bool is_daily_table(std::string_view text) {
   files::TextLines lines(text, "");
   while (lines.next())

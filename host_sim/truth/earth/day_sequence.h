@@ -18,7 +18,7 @@ class DaySequence {
   int before_ = 0;
 };
 
-/// The modified Julian day of a calendar date. Throws files::FormatError for a date that does not exist.
+/// Returns the modified Julian day of a calendar date. Throws files::FormatError for a date that does not exist.
 [[nodiscard]] int mjd_of_date(const files::TextLines& lines, int year, int month, int day);
 
 }  // namespace vbar::truth

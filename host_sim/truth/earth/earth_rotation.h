@@ -22,8 +22,9 @@ struct CelestialPole {
   double s = 0.0;
 };
 
-/// The full series of the IERS Conventions 2010 (tables 5.2a, b, d), some 0.1 ms a call. ERFA's other way to the pole,
-/// through the precession-nutation matrix, agrees with it to a microarcsecond (5e-12 rad), as the Conventions say.
+/// Computes the full series of the IERS Conventions 2010 (tables 5.2a, b, d), some 0.1 ms a call. ERFA's other way to
+/// the pole, through the precession-nutation matrix, agrees with it to a microarcsecond (5e-12 rad), as the Conventions
+/// say.
 CelestialPole celestial_pole_iau2006a(JulianDate tt);
 
 /// Interpolates celestial_pole_iau2006a(): error below 1e-12 rad in x, y and s (held by its test), some 20 ns a call.
@@ -45,7 +46,7 @@ class CelestialPoleInterpolator {
   double s_[kNodePoints] = {};
 };
 
-/// Rotation to ITRF from GCRF out of its parts; era, pole_x, pole_y, sp (TIO locator s') in rad.
+/// Returns the rotation to ITRF from GCRF out of its parts; era, pole_x, pole_y, sp (TIO locator s') in rad.
 fsw::Matrix3 R_itrf_gcrf(const CelestialPole& pole, double era, double pole_x, double pole_y, double sp);
 
 /// The real Earth's rotation about one epoch. Not thread-safe: one object per thread.
@@ -54,7 +55,8 @@ class EarthRotation {
   /// `orientation` must not be null.
   EarthRotation(std::shared_ptr<const EarthOrientationSeries> orientation, fsw::GpsTime epoch);
 
-  /// Rotation to ITRF from GCRF `seconds` after the epoch. Throws std::out_of_range outside the Earth orientation data.
+  /// Returns the rotation to ITRF from GCRF `seconds` after the epoch. Throws std::out_of_range outside the Earth
+  /// orientation data.
   fsw::Matrix3 R_itrf_gcrf_at(double seconds);
 
   fsw::GpsTime epoch() const { return epoch_; }

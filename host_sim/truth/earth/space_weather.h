@@ -51,11 +51,11 @@ class SpaceWeather {
   /// none.
   [[nodiscard]] const Day* find_first(Kind kind, fsw::GpsTime begin, fsw::GpsTime end) const;
 
-  /// The indices that hold at `time`. F10.7 is the day before's. Throws std::out_of_range, naming date and range, where
-  /// the series lacks the day itself, the day before or, three-hourly, the 57 hours before.
+  /// Returns the indices that hold at `time`. F10.7 is the day before's. Throws std::out_of_range, naming date and
+  /// range, where the series lacks the day itself, the day before or, three-hourly, the 57 hours before.
   SolarIndices indices_at(fsw::GpsTime time, GeomagneticIndex geomagnetic_index) const;
 
-  /// The first instant after `time` at which indices change: 0h UTC, and three-hourly 3h, 6h, ... UTC too.
+  /// Returns the first instant after `time` at which indices change: 0h UTC, and three-hourly 3h, 6h, ... UTC too.
   static fsw::GpsTime next_change_after(fsw::GpsTime time, GeomagneticIndex geomagnetic_index);
 
  private:

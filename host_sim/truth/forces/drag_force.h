@@ -43,7 +43,7 @@ class DragForce final : public Force {
   /// Throws std::out_of_range outside the space weather data.
   void enter_interval(double seconds) override;
 
-  /// The air at a state, with the indices of the interval entered last.
+  /// Returns the air at a state, with the indices of the interval entered last.
   AtmosphereState atmosphere_at(const ForceInput& input);
 
  private:

@@ -21,7 +21,7 @@ struct GravityCoefficients {
 
   static std::size_t index(int n, int m) { return static_cast<std::size_t>(n) * (n + 1) / 2 + m; }
 
-  /// Coefficients of one degree and order, 0 if n is above the degree.
+  /// Returns the coefficients of one degree and order, 0 if n is above the degree.
   double c_nm(int n, int m) const { return n <= degree ? c[index(n, m)] : 0.0; }
   double s_nm(int n, int m) const { return n <= degree ? s[index(n, m)] : 0.0; }
 };

@@ -27,10 +27,11 @@ class GravityField {
   int degree() const { return degree_; }
   int order() const { return order_; }
 
-  /// Acceleration without that of the point mass, m/s^2, in ITRF, at a position (m, not the centre) in ITRF.
+  /// Returns the acceleration without that of the point mass, m/s^2, in ITRF, at a position (m, not the centre) in
+  /// ITRF.
   fsw::Vector3 perturbation_itrf(const fsw::Vector3& position_itrf) const;
 
-  /// Whole gravitational acceleration, m/s^2, in ITRF.
+  /// Returns the whole gravitational acceleration, m/s^2, in ITRF.
   fsw::Vector3 acceleration_itrf(const fsw::Vector3& position_itrf) const;
 
  private:

@@ -35,7 +35,7 @@ class RadiationPressureForce final : public Force {
 
   double longest_step(const ForceInput& input) const override;
 
-  /// Part of the Sun's light that arrives, 0 to 1, on the side of the edges that was set.
+  /// Returns the part of the Sun's light that arrives, 0 to 1, on the side of the edges that was set.
   double sunlit_fraction(const ForceInput& input) const;
 
  private:

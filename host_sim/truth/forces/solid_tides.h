@@ -20,8 +20,8 @@ namespace vbar::truth {
 /// (zero tide) or nothing (tide free).
 enum class TideSystem { kZeroTide, kTideFree };
 
-/// The tide system of a coefficient file: "zero_tide" or "tide_free". Throws std::invalid_argument, naming both, for
-/// another.
+/// Returns the tide system of a coefficient file: "zero_tide" or "tide_free". Throws std::invalid_argument, naming
+/// both, for another.
 TideSystem tide_system_named(std::string_view name);
 
 /// A body that raises tides.
@@ -34,9 +34,9 @@ struct TidalBody {
 /// changed by the degree-2 tide through the Earth's flattening. `radius`: the gravity model's reference radius, m.
 void add_love_number_response(const TidalBody& body, double radius, LowDegreeCoefficients& change);
 
-/// Step 1's mean of C20 over all time (section 6.2.2, eq. 6.14): A0 H0 k20 = -4.2e-9. Step 1 contains the whole tide,
-/// mean included; a zero-tide C20 contains the deformation of the mean already, so it is subtracted there, and counted
-/// once.
+/// Returns step 1's mean of C20 over all time (section 6.2.2, eq. 6.14): A0 H0 k20 = -4.2e-9. Step 1 contains the whole
+/// tide, mean included; a zero-tide C20 contains the deformation of the mean already, so it is subtracted there, and
+/// counted once.
 double permanent_tide_c20();
 
 /// Step 2. The sums over the tables' 71 lines are e^(i m (GMST + pi)) times sums that change over days; those are kept

@@ -25,7 +25,7 @@ class SolidTidesForce final : public Force {
   /// Throws std::out_of_range outside the Earth orientation data.
   fsw::Vector3 acceleration_eci(const ForceInput& input) override;
 
-  /// The change of the gravity model's coefficients that makes the acceleration.
+  /// Returns the change of the gravity model's coefficients that makes the acceleration.
   LowDegreeCoefficients coefficients(const ForceInput& input);
 
  private:

@@ -62,7 +62,7 @@ struct CameraSettings {
     const double radius_m = 0.5e-3 * optics.focal_length_mm / optics.f_number;
     return 3.14159265358979323846 * radius_m * radius_m;
   }
-  /// Photo-electrons on the detector per photon/m^2 at the lens, on axis.
+  /// Returns the photo-electrons on the detector per photon/m^2 at the lens, on axis.
   [[nodiscard]] double electrons_per_photon_m2() const {
     return aperture_m2() * optics.transmission * detector.quantum_efficiency;
   }

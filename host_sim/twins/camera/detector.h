@@ -26,7 +26,7 @@ struct HotPixel {
   double electrons_per_s = 0.0;
 };
 
-/// Places and sizes of the hot pixels of a region, from the seed.
+/// Draws places and sizes of the hot pixels of a region, from the seed.
 [[nodiscard]] std::vector<HotPixel> draw_hot_pixels(const DetectorSettings& detector, const Region& region,
                                                     std::uint64_t seed, std::string_view camera_name);
 
@@ -47,7 +47,7 @@ class Detector {
               std::optional<double> duration_s = std::nullopt);
 
   [[nodiscard]] std::span<const HotPixel> hot_pixels() const { return hot_pixels_; }
-  /// Lost by blooming in the last exposure, electrons.
+  /// Returns the charge lost by blooming in the last exposure, electrons.
   [[nodiscard]] double drained_electrons() const { return drained_electrons_; }
 
  private:

@@ -22,7 +22,7 @@ void uniform_disc(const fsw::Vector3& direction, double radius, double photons_p
 void moon_disc(const fsw::Vector3& moon, const fsw::Vector3& sun_direction, double zero_magnitude_photons,
                int points_across, std::vector<LightSample>& out);
 
-/// V of the Moon at `distance_m`, at the phase angle Sun - Moon - observer (rad).
+/// Returns V of the Moon at `distance_m`, at the phase angle Sun - Moon - observer (rad).
 double moon_magnitude(double phase_angle, double distance_m);
 
 }  // namespace vbar::twins::camera

@@ -18,20 +18,20 @@ class EarthDisc {
   /// `position_eci`: of the camera, outside the Earth; `sun_eci`: both geocentric, m.
   EarthDisc(const fsw::Vector3& position_eci, const fsw::Vector3& sun_eci);
 
-  /// Along `direction_eci` (unit); `blur`: rad, positive.
+  /// Returns the sight of the Earth along `direction_eci` (unit); `blur`: rad, positive.
   [[nodiscard]] EarthSight look(const fsw::Vector3& direction_eci, double blur) const;
 
-  /// True if something at `distance_m` along `direction_eci` is behind the Earth.
+  /// Whether an object at `distance_m` along `direction_eci` is behind the Earth.
   [[nodiscard]] bool hides(const fsw::Vector3& direction_eci, double distance_m) const;
 
   /// Half angle of the smallest cone about the centre's direction that holds the whole Earth, rad.
   [[nodiscard]] double angular_radius() const { return angular_radius_; }
   [[nodiscard]] const fsw::Vector3& centre_direction_eci() const { return centre_direction_eci_; }
 
-  /// Photons/(m^2 s sr) of a surface that faces the Sun, for sunlight of the given photons/(m^2 s).
+  /// Returns the photons/(m^2 s sr) of a surface that faces the Sun, for sunlight of the given photons/(m^2 s).
   [[nodiscard]] static double radiance(double sun_photons_per_m2_s);
 
-  /// Light of the Earth at the camera: the sum of all its directions' light, each times its unit vector,
+  /// Returns the light of the Earth at the camera: the sum of all its directions' light, each times its unit vector,
   /// photons/(m^2 s), ECI axes. It points at the Earth's brightest part.
   [[nodiscard]] fsw::Vector3 light_eci(double sun_photons_per_m2_s) const;
 

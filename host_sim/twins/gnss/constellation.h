@@ -64,24 +64,24 @@ class Constellation {
   Constellation(const std::filesystem::path& data_directory, const ConstellationSettings& settings, fsw::GpsTime epoch,
                 std::uint64_t seed);
 
-  /// In order of system and number.
+  /// Returns the number of satellites, which are in order of system and number.
   [[nodiscard]] std::size_t size() const { return satellites_.size(); }
   [[nodiscard]] SatelliteId id(std::size_t index) const { return satellites_[index].base.satellite; }
 
-  /// True state and clock of the satellite, `offset_s` after `time`. The errors' own velocity
-  /// (0.2 mm/s) is included in position only.
+  /// Returns the true state and clock of the satellite, `offset_s` after `time`. The errors' own velocity (0.2 mm/s) is
+  /// included in position only.
   [[nodiscard]] SatelliteState true_state(std::size_t index, fsw::GpsTime time, double offset_s) const;
 
-  /// True group delay of the satellite's first signal, s; broadcast values are taken as true.
+  /// Returns the true group delay of the satellite's first signal, s; broadcast values are taken as true.
   [[nodiscard]] double group_delay_s(std::size_t index) const { return satellites_[index].base.group_delay_s; }
 
-  /// The set that the satellite transmits at `time`. GPS: a new one every two hours, with toe at their end; Galileo and
-  /// BeiDou: every hour, with toe at its beginning.
+  /// Returns the set that the satellite transmits at `time`. GPS: a new one every two hours, with toe at their end;
+  /// Galileo and BeiDou: every hour, with toe at its beginning.
   [[nodiscard]] BroadcastSet broadcast_set(std::size_t index, fsw::GpsTime time) const;
 
   [[nodiscard]] const BroadcastCorrections& corrections() const { return corrections_; }
 
-  /// On what the navigation files hold beside what flies.
+  /// Returns the notes on the content of the navigation files that is not used.
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
 
  private:

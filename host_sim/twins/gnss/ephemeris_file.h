@@ -16,8 +16,8 @@ struct EphemerisFile {
   std::string note;                   ///< what it holds beside them, with its name; empty: nothing
 };
 
-/// The satellites of the systems in `used`; records of others are not looked at. Throws std::runtime_error naming file,
-/// line and what is accepted.
+/// Reads the satellites of the systems in `used`; records of others are not looked at. Throws std::runtime_error naming
+/// file, line and what is accepted.
 EphemerisFile read_ephemeris_file(const std::filesystem::path& file, const SystemSet& used = kAllSystems);
 
 }  // namespace vbar::twins::gnss

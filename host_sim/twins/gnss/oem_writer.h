@@ -12,7 +12,7 @@
 
 namespace vbar::twins::gnss::oem {
 
-/// NovAtel's CRC-32: the standard polynomial, but initialised with 0 and not inverted.
+/// Computes NovAtel's CRC-32: the standard polynomial, but initialised with 0 and not inverted.
 std::uint32_t crc32(std::span<const std::uint8_t> bytes);
 
 /// The header is written at once, its length and the CRC by finish().

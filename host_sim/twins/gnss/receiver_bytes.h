@@ -49,7 +49,7 @@ struct ReceiverOutput {
   std::string failure = {};  ///< if the receiver gave no data for this epoch: the reason, one sentence
 };
 
-/// The truth about one spacecraft, which must have an attitude.
+/// Returns the truth about one spacecraft, which must have an attitude.
 [[nodiscard]] BodyTruth body_truth(const TruthSnapshot& truth, const SpacecraftTruth& spacecraft);
 
 class ReceiverBytes {
@@ -66,13 +66,13 @@ class ReceiverBytes {
   [[nodiscard]] virtual std::vector<Note> statistics() const { return {}; }
   [[nodiscard]] virtual std::optional<io::WiredReceiver> wired_receiver() const { return std::nullopt; }
 
-  /// Between calls of output_at; empty: the sensor's period.
+  /// Returns the period between calls of output_at; empty: the sensor's period.
   [[nodiscard]] virtual std::optional<fsw::Duration> call_period() const { return std::nullopt; }
 
-  /// Once every period, in order.
+  /// Measures once every period, in order.
   virtual ReceiverOutput output_at(const BodyTruth& truth) = 0;
 
-  /// As that of PacketSource.
+  /// Upsets the receiver as PacketSource::upset().
   virtual bool upset(const Upset& upset) {
     static_cast<void>(upset);
     return false;

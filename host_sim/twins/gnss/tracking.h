@@ -51,7 +51,7 @@ class SatelliteTracking {
   [[nodiscard]] std::vector<SignalTrack>& signals() { return signals_; }
   [[nodiscard]] const std::vector<SignalTrack>& signals() const { return signals_; }
 
-  /// Start of the continuous reception of the navigation message; empty without reception.
+  /// Returns the start of the continuous reception of the navigation message; empty without reception.
   [[nodiscard]] std::optional<fsw::GpsTime> heard_since() const { return heard_since_; }
 
  private:

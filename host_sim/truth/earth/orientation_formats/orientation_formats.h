@@ -49,7 +49,7 @@ struct OrientationFormat {
 
 [[nodiscard]] std::span<const OrientationFormat> orientation_formats();
 
-/// The days of a text in any of the formats. Throws files::FormatError; for an unknown format it names all.
+/// Reads the days of a text in any of the formats. Throws files::FormatError; for an unknown format it names all.
 [[nodiscard]] OrientationDays read_orientation(std::string_view text, const std::string& file);
 
 /// Values of one row in the units of the publications. Refuses what no Earth orientation since 1962 has been near,

@@ -42,7 +42,7 @@ struct WeatherFormat {
 
 [[nodiscard]] std::span<const WeatherFormat> weather_formats();
 
-/// The days of a text in any of the formats. Throws files::FormatError; for an unknown format it names all.
+/// Reads the days of a text in any of the formats. Throws files::FormatError; for an unknown format it names all.
 [[nodiscard]] WeatherDays read_weather(std::string_view text, const std::string& file);
 
 /// What both CSSI formats hold of one row; empty where the row is blank.

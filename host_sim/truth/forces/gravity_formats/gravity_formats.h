@@ -13,7 +13,7 @@ namespace vbar::truth {
 struct GravityFormat {
   std::string_view name;
   bool (*recognises)(std::string_view text);
-  /// The model up to `degree`. Throws files::FormatError, and std::invalid_argument for a degree that it lacks.
+  /// Reads the model up to `degree`. Throws files::FormatError, and std::invalid_argument for a degree that it lacks.
   GravityCoefficients (*read)(std::string_view text, const std::string& file, int degree);
 };
 
@@ -29,8 +29,8 @@ struct GravityFormat {
 
 [[nodiscard]] std::span<const GravityFormat> gravity_formats();
 
-/// The model of a text in any of the formats, up to `degree`. Throws files::FormatError; for an unknown format it names
-/// all; std::invalid_argument for a degree that the model lacks.
+/// Reads the model of a text in any of the formats, up to `degree`. Throws files::FormatError; for an unknown format it
+/// names all; std::invalid_argument for a degree that the model lacks.
 [[nodiscard]] GravityCoefficients read_gravity(std::string_view text, const std::string& file, int degree);
 
 inline constexpr int kHighestDegree = 2190;  ///< degree of the largest published models: limits damaged headers

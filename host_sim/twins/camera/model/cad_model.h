@@ -43,9 +43,9 @@ inline constexpr std::size_t kMaxMaterials = 64;
 inline constexpr double kMinModelRadiusM = 0.05;
 inline constexpr double kMaxModelRadiusM = 100.0;
 
-/// A model of these triangles with its bounding sphere, without the faces of zero area. Throws std::runtime_error,
-/// naming `source` and what is wrong: no faces, a corner that is not finite, more than 1 % of the faces without area, a
-/// sphere outside kMinModelRadiusM to kMaxModelRadiusM, no or too many materials.
+/// Makes a model of these triangles with its bounding sphere, without the faces of zero area. Throws
+/// std::runtime_error, naming `source` and what is wrong: no faces, a corner that is not finite, more than 1 % of the
+/// faces without area, a sphere outside kMinModelRadiusM to kMaxModelRadiusM, no or too many materials.
 CadModel make_cad_model(std::string source, std::vector<Triangle> triangles, std::vector<Material> materials);
 
 /// Throws std::runtime_error, naming `source` and the material, unless reflectivities lie in 0 to 1, the grey of both

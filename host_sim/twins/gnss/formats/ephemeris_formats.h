@@ -31,7 +31,7 @@ struct EphemerisFormat {
 
 [[nodiscard]] std::span<const EphemerisFormat> ephemeris_formats();
 
-/// The satellites of a text in any of the formats. Throws std::runtime_error; for an unknown format it names all.
+/// Reads the satellites of a text in any of the formats. Throws std::runtime_error; for an unknown format it names all.
 [[nodiscard]] EphemerisFile read_ephemerides(std::string_view text, const std::string& file,
                                              const SystemSet& used = kAllSystems);
 
@@ -51,10 +51,10 @@ inline constexpr double kLongestClockAge_s = 86400.0;
 /// Galileo has two satellites at 0.16 (E14, E18); the flight software rejects more.
 inline constexpr double kMaxEccentricity = 0.2;
 
-/// What is wrong with a record; empty if nothing is.
+/// Returns the defect of a record; empty if it has none.
 [[nodiscard]] std::string problem_of(const BroadcastRecord& record);
 
-/// The set with the clock's reference time moved to toe. The record must have no problem.
+/// Returns the set with the clock's reference time moved to toe. The record must have no problem.
 [[nodiscard]] Ephemeris ephemeris_of(const BroadcastRecord& record);
 
 }  // namespace vbar::twins::gnss

@@ -18,7 +18,8 @@ class LeftOut {
 
   [[nodiscard]] bool is_empty() const { return entries_.empty(); }
 
-  /// "GLONASS (210), Galileo F/NAV (12), sets of zeros (2; the first: G05 in line 19)".
+  /// Returns the records left out in words: "GLONASS (210), Galileo F/NAV (12), sets of zeros (2; the first: G05 in
+  /// line 19)".
   [[nodiscard]] std::string text() const;
 
  private:

@@ -19,8 +19,8 @@ class RinexRecords {
     advance();
   }
 
-  /// The next set that can be used; nothing at the end. Corrections of version 4 go to `corrections`.
-  /// Throws files::FormatError.
+  /// Reads the next set that can be used; nothing at the end. Corrections of version 4 go to `corrections`. Throws
+  /// files::FormatError.
   std::optional<BroadcastRecord> next(BroadcastCorrections& corrections);
 
   [[nodiscard]] const LeftOut& left_out() const { return left_out_; }
