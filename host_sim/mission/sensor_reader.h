@@ -59,8 +59,8 @@ struct Installation {
 [[nodiscard]] std::unique_ptr<engine::WallClock> make_wall_clock(const Mission& mission,
                                                                  const Installation& installation);
 
-/// `source` and, for "recorded", `log`: `twin` is the name of the source that this program simulates, the default.
-/// Testbeds of the mission are accepted too.
+/// Reads `source` and, for "recorded", `log`: `twin` is the name of the source that this program simulates, the
+/// default. Testbeds of the mission are accepted too.
 void read_source(const TableReader& section, std::string_view twin, const SensorContext& context,
                  SensorSettings& settings);
 

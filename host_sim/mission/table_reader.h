@@ -160,7 +160,7 @@ class TableReader {
   [[nodiscard]] const toml::node* find(std::string_view key) const;
   void finish(const toml::table& table) const;
   void refuse_unknown_keys(const toml::table& table) const;
-  /// What the key accepts, for asked_of_all().
+  /// Records what the key accepts, for asked_of_all().
   void note(std::string_view key, std::string accepted, std::string default_value = {}) const;
   void note_choice(std::string_view key, const std::vector<std::string_view>& names,
                    std::string_view default_name) const;

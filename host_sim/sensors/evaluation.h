@@ -21,13 +21,13 @@ class Evaluation {
   Evaluation& operator=(const Evaluation&) = delete;
   virtual ~Evaluation() = default;
 
-  /// The truth of a measurement of this sensor, if its source is one whose truth is compared.
+  /// Receives the truth of a measurement of this sensor, if its source is one whose truth is compared.
   virtual void on_measured(const twins::TruthSnapshot& /*truth*/) {}
-  /// The bytes that the flight software received, from all sensors, with the step at `time`.
+  /// Receives the bytes that the flight software received, from all sensors, with the step at `time`.
   virtual void on_inputs(fsw::GpsTime /*time*/, std::span<const twins::Packet> /*inputs*/) {}
-  /// Its answer: telemetry and commands.
+  /// Receives the answer of the flight software: telemetry and commands.
   virtual void on_answer(fsw::GpsTime /*time*/, std::span<const fsw::packets::PacketView> /*answer*/) {}
-  /// The run is over, however it ended.
+  /// Ends the evaluation when the run is over, however it ended.
   virtual void finish() {}
 };
 

@@ -26,7 +26,7 @@ namespace vbar::sensors {
                                                      const fsw::orbit::CartesianState& servicer_state,
                                                      const fsw::orbit::CartesianState& target_state);
 
-/// None with ideal navigation, which needs none.
+/// Adds the telecommands to navigation; none with ideal navigation, which needs none.
 void add_navigation_telecommands(const TelecommandContext& context, Telecommands& telecommands);
 
 }  // namespace vbar::sensors

@@ -28,7 +28,8 @@ class Telecommands {
  public:
   Telecommands(fsw::GpsTime time, std::uint8_t spacecraft) : time_(time), spacecraft_(spacecraft) {}
 
-  /// `unit`: of the device that it is for. Throws std::runtime_error for a message that holds a NaN or an infinity.
+  /// Adds a telecommand; `unit` is that of the device that it is for. Throws std::runtime_error for a message that
+  /// holds a NaN or an infinity.
   template <class Message>
   void add(const Message& message, std::uint8_t unit = 0) {
     fsw::packets::PacketHeader header;

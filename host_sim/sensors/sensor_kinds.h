@@ -54,7 +54,7 @@ using MakeSources =
                                                             const mission::Spacecraft& servicer,
                                                             report::RunRecord& record);
 
-/// What the summary says of the sensors of `servicer`.
+/// Adds the facts that the summary states about the sensors of `servicer`.
 void add_facts(const mission::Mission& mission, const mission::Spacecraft& servicer, report::RunFacts& facts);
 
 /// Returns the extensions by which the kinds and the testbeds add to record, summary and report.

@@ -35,7 +35,7 @@ class CropMaker {
   /// Makes crops of a target of data/bodies. Throws std::runtime_error if a file of `data_directory` cannot be read.
   CropMaker(const std::filesystem::path& data_directory, const std::string& target, CropKind kind, std::uint64_t seed);
 
-  /// Crop `index` of the seed: independent of the crops made before (on the same processor).
+  /// Makes crop `index` of the seed, independent of the crops made before (on the same processor).
   void make(std::int64_t index, LabelledCrop& crop);
 
   [[nodiscard]] const twins::camera::CameraSettings& camera() const { return camera_; }

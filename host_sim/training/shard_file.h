@@ -26,8 +26,8 @@ inline constexpr std::uint32_t kNumbers = 56;
 /// Appends a crop's bytes.
 void append_crop(const LabelledCrop& crop, const twins::camera::CameraSettings& camera, std::string& bytes);
 
-/// `crops`: what append_crop made of `count` of them. Throws std::runtime_error that names the file; it has its name
-/// only once it is whole.
+/// Writes a file of crops. `crops`: what append_crop made of `count` of them. Throws std::runtime_error that names the
+/// file; it has its name only once it is whole.
 void write_shard(const std::filesystem::path& file, std::uint64_t seed, std::int64_t first, std::uint32_t count,
                  const std::string& crops);
 

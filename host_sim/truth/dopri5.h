@@ -90,7 +90,8 @@ class Dopri5 {
   /// Adds a constant under which the right-hand side does not change (a full revolution of an angle).
   void translate(const State& offset) { state_ += offset; }
 
-  /// One accepted step, not beyond `limit`. Throws std::runtime_error if no step, however small, meets the tolerance.
+  /// Takes one accepted step, not beyond `limit`. Throws std::runtime_error if no step, however small, meets the
+  /// tolerance.
   void step(double limit) {
     while (true) {
       // A step that would leave less than a hundredth of itself is stretched or cut to end at the limit.
@@ -123,7 +124,7 @@ class Dopri5 {
     }
   }
 
-  /// One step of the integrator's own choice.
+  /// Takes one step of the integrator's own choice.
   void step() { step(direction_ * std::numeric_limits<double>::infinity()); }
 
   /// Steps until exactly `end`, which must not lie before the current time.

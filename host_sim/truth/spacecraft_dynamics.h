@@ -47,7 +47,8 @@ class SpacecraftDynamics {
   /// McDowell 2018), and free-molecular drag no longer applies.
   static constexpr double kReentryAltitude = 80e3;
 
-  /// `name` for messages; `gm` (m^3/s^2) and `earth_radius` (m) of the central body; forces beside the point mass.
+  /// Makes the dynamics: `name` for messages; `gm` (m^3/s^2) and `earth_radius` (m) of the central body; forces beside
+  /// the point mass.
   SpacecraftDynamics(std::string name, double gm, double earth_radius, EarthRotation earth_rotation,
                      std::vector<std::unique_ptr<Force>> forces);
 
@@ -70,13 +71,13 @@ class SpacecraftDynamics {
   const ForceRegime& regime() const { return regime_; }
   void set_regime(const ForceRegime& regime);
 
-  /// The regime of an instant.
+  /// Enters the regime of an instant.
   void enter_regime_of(double seconds, const fsw::orbit::CartesianState& state);
 
-  /// From here on the motion is on the other side of an edge.
+  /// Crosses an edge: from here on the motion is on the other side of an edge.
   void cross_edge(int index, double seconds, const fsw::orbit::CartesianState& state);
 
-  /// From here on the motion is in the interval that begins at a jump.
+  /// Enters an interval: from here on the motion is in the interval that begins at a jump.
   void enter_interval(double seconds);
 
   /// Returns the first date after `seconds` at which a force jumps by itself.

@@ -47,11 +47,11 @@ class FlownLog {
   /// Returns the byte from which on it is damaged or cut.
   [[nodiscard]] std::optional<std::uint64_t> damaged_from() const { return damaged_from_; }
 
-  /// Nothing from this time on is compared.
+  /// Limits the comparison: nothing from this time on is compared.
   void compare_before(fsw::GpsTime time) { until_ = lcm_timestamp(time); }
 
-  /// The next event of the flight (twins::EventCheck). Throws FlownOtherwise, or DamagedLog if it differs from an event
-  /// whose checksum is wrong.
+  /// Compares the next event of the repetition (twins::EventCheck). Throws FlownOtherwise, or DamagedLog if it differs
+  /// from an event whose checksum is wrong.
   void compare(fsw::GpsTime time, const LcmEvent& flown);
 
   /// Whether everything that was to be compared has been, and was identical.

@@ -24,7 +24,7 @@ class GnssSensor final : public PacketSource {
     fsw::Duration period;            ///< > 0, integer milliseconds: between calls of the receiver
   };
 
-  /// `crosslink`: how the bytes reach the flight software; null: by wire. `receiver` must not be null.
+  /// Makes a sensor. `crosslink`: how the bytes reach the flight software; null: by wire. `receiver` must not be null.
   GnssSensor(const Settings& settings, std::unique_ptr<gnss::ReceiverBytes> receiver,
              std::unique_ptr<gnss::Crosslink> crosslink);
 

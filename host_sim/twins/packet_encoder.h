@@ -12,8 +12,8 @@ namespace vbar::twins {
 
 class PacketEncoder {
  public:
-  /// `spacecraft` and `unit` as in fsw/packets/packet.h. One encoder a message kind: sequences count per APID, from
-  /// `sequence_count` (14 bits) on.
+  /// Makes an encoder; `spacecraft` and `unit` as in fsw/packets/packet.h. One encoder a message kind: sequences count
+  /// per APID, from `sequence_count` (14 bits) on.
   PacketEncoder(std::uint8_t spacecraft, std::uint8_t unit, std::uint16_t sequence_count = 0)
       : spacecraft_(spacecraft), unit_(unit), sequence_count_(sequence_count) {}
 

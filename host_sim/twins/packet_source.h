@@ -145,12 +145,13 @@ class PacketSource {
   PacketSource& operator=(const PacketSource&) = delete;
   virtual ~PacketSource() = default;
 
-  /// Before the run folder exists: a device answers, is homed and calibrated. `first_epoch` is the start of the run.
-  /// Throws std::runtime_error, one sentence, if the run must not start.
+  /// Starts the source before the run folder exists: a device answers, is homed and calibrated. `first_epoch` is the
+  /// start of the run. Throws std::runtime_error, one sentence, if the run must not start.
   virtual void start(fsw::GpsTime first_epoch) { static_cast<void>(first_epoch); }
 
-  /// The run is over, however it ended: motion stops, and what is pending is completed or abandoned without delay.
-  /// Called once after start(), also after one that threw. An exception is reported and has no other effect.
+  /// Stops the source when the run is over, however it ended: motion stops, and what is pending is completed or
+  /// abandoned without delay. Called once after start(), also after one that threw. An exception is reported and has no
+  /// other effect.
   virtual void stop(StopReason reason) { static_cast<void>(reason); }
 
   /// Returns the first epoch at or after `from` at which it measures; empty after the last one.
@@ -160,8 +161,8 @@ class PacketSource {
   /// interrupted: longer work is `pending`.
   virtual Measurement measure(const TruthSnapshot& truth) = 0;
 
-  /// A command of the flight software, of any kind and to any device; it takes effect at `effective`, the present or
-  /// later.
+  /// Receives a command of the flight software, of any kind and to any device; it takes effect at `effective`, the
+  /// present or later.
   virtual void command(const fsw::packets::PacketView& packet, fsw::GpsTime effective) {
     static_cast<void>(packet);
     static_cast<void>(effective);

@@ -24,8 +24,8 @@ class RecordedLog final : public PacketSource {
     std::optional<std::uint8_t> unit = {};  ///< none: of all
   };
 
-  /// `make_tiles` is needed for logs without the pixels of their images. Throws std::runtime_error, as read_packet_log,
-  /// for a log without any such packet, and for one that lacks tiles without `make_tiles`.
+  /// Opens a log. `make_tiles` is needed for logs without the pixels of their images. Throws std::runtime_error, as
+  /// read_packet_log, for a log without any such packet, and for one that lacks tiles without `make_tiles`.
   RecordedLog(const std::filesystem::path& file, const Selection& selection, const MakeTileSource& make_tiles = {});
 
   /// Returns the time of the next recorded delivery, or of the next exposure of a recorded image: its truth is then

@@ -24,9 +24,9 @@ struct CameraFile {
 /// Loads the camera in the file. What a file leaves out is the Optical Stimulator's. Throws MissionError.
 [[nodiscard]] CameraFile load_camera(const std::filesystem::path& file);
 
-/// The keys of a camera that a file and a mission have in common, over what `camera` holds already: exposure_s,
-/// region_px, zero_magnitude_photons, the tables optics and detector. Throws MissionError for one that is out of
-/// range, and for settings that do not fit together.
+/// Reads the keys of a camera that a file and a mission have in common, over what `camera` holds already: exposure_s,
+/// region_px, zero_magnitude_photons, the tables optics and detector. Throws MissionError for one that is out of range,
+/// and for settings that do not fit together.
 void read_camera_settings(const mission::TableReader& section, CameraFile& camera);
 
 }  // namespace vbar::sensors

@@ -39,11 +39,11 @@ class GalleryKeeper {
   GalleryKeeper(const mission::Mission& mission, const mission::Spacecraft& servicer, TakeTwinImage take_twin = {},
                 std::uint8_t unit = 0);
 
-  /// The packets that the flight software got with the step at `now`: tiles among them are assembled if they may be
-  /// wanted. One image is kept, as in the flight software.
+  /// Receives the packets that the flight software got with the step at `now`; tiles among them are assembled if they
+  /// may be wanted. One image is kept, as in the flight software.
   void on_inputs(fsw::GpsTime now, std::span<const twins::Packet> inputs);
 
-  /// After on_inputs() of the same step. Images come in order of time.
+  /// Receives the findings of an image, after on_inputs() of the same step. Images come in order of time.
   void on_image(const ImageFindings& found, std::vector<report::GalleryImage>& gallery);
 
   /// Puts what is still kept into the gallery, at the end of the run.

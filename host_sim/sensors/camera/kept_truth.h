@@ -12,7 +12,7 @@ namespace vbar::sensors {
 
 class KeptTruth {
  public:
-  /// Once for each image: two cameras may expose at the same time.
+  /// Keeps the truth of an exposure, once for each image: two cameras may expose at the same time.
   void keep(const twins::TruthSnapshot& truth) { kept_.emplace(truth.time, truth); }
 
   /// Returns the truth of an exposure and releases it. If there is none, the exposure is counted and the result empty.

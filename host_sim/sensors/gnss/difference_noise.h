@@ -45,7 +45,7 @@ struct ResidualEpoch {
 
 class DifferenceNoise {
  public:
-  /// Epochs in order of time.
+  /// Adds an epoch; epochs come in order of time.
   void add(const ResidualEpoch& epoch);
 
   /// Returns one row for each signal that was measured.

@@ -43,7 +43,7 @@ class RangeFinder final : public twins::PacketSource {
     fsw::GpsTime start;  ///< first epoch
   };
 
-  /// `stream`: of its errors.
+  /// Makes a range finder; `stream` is that of its errors.
   RangeFinder(const RangeFinderSettings& settings, const Place& place, const engine::RandomStream& stream);
 
   [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override;

@@ -13,7 +13,7 @@ class EffectiveAp {
  public:
   EffectiveAp() = default;
 
-  /// `p`: the coefficients of the quantity.
+  /// Evaluates the coupling to ap; `p` are the coefficients of the quantity.
   EffectiveAp(const Nrlmsise00Tables::Upper& p, const SolarIndices& indices);
 
   /// Returns the effective ap at a latitude: the decay depends on the distance of the latitude from 45 deg.

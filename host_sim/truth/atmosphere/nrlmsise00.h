@@ -42,7 +42,7 @@ struct AtmosphereState {
 /// on the input only.
 class Nrlmsise00 {
  public:
-  /// `tables`, shared between objects, must not be null.
+  /// Makes the model; `tables`, shared between objects, must not be null.
   explicit Nrlmsise00(std::shared_ptr<const Nrlmsise00Tables> tables);
 
   /// Throws std::invalid_argument for an input that is not finite, or a day or latitude out of range; std::domain_error

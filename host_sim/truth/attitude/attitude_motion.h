@@ -19,7 +19,7 @@ class AttitudeMotion {
   /// least once in each of these steps.
   virtual void advance_to(double seconds, double orbit_step_end) = 0;
 
-  /// An impulse has changed the orbit from `seconds` on, the time of the last advance_to.
+  /// Accounts for an impulse that has changed the orbit from `seconds` on, the time of the last advance_to.
   virtual void orbit_changed(double seconds) = 0;
 
   /// Returns the attitude at a time for which both the attitude and the orbit are kept. Throws std::out_of_range

@@ -9,7 +9,7 @@ namespace vbar::truth {
 
 class GravityGradientTorque final : public Torque {
  public:
-  /// `gm` of the Earth in m^3/s^2; `inertia_kgm2` about the centre of mass, in body axes.
+  /// Makes the torque from `gm` of the Earth in m^3/s^2; `inertia_kgm2` about the centre of mass, in body axes.
   GravityGradientTorque(double gm, const fsw::Matrix3& inertia_kgm2) : gm_(gm), inertia_(inertia_kgm2) {}
 
   [[nodiscard]] std::string_view name() const override { return "gravity_gradient"; }

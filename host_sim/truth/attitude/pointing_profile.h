@@ -48,9 +48,9 @@ struct PointingSettings {
 /// A pure function of the orbits: it holds no state.
 class PointingProfile final : public AttitudeMotion {
  public:
-  /// `own`: of the pointing spacecraft. `other`: of the one pointed at, and `sun`: needed only if a direction of the
-  /// settings says so. Throws std::invalid_argument for parallel body axes, directions on one line, and for
-  /// missing motions that are needed.
+  /// Makes a profile. `own` is the motion of the pointing spacecraft; `other` that of the one pointed at, and `sun`,
+  /// are needed only if a direction of the settings says so. Throws std::invalid_argument for parallel body axes,
+  /// directions on one line, and for missing motions that are needed.
   PointingProfile(const PointingSettings& settings, MotionOfTime own, MotionOfTime other, SunOfTime sun);
 
   void advance_to(double /*seconds*/, double /*orbit_step_end*/) override {}

@@ -29,15 +29,15 @@ class RigidBody final : public AttitudeMotion {
   /// The orbit at a time for which it is known; asked for only if there are torques.
   using OrbitOfTime = std::function<ForceInput(double seconds)>;
 
-  /// `inertia_kgm2`: about the centre of mass, in body axes (check_inertia). `tolerance`: local error a step, in rad of
-  /// attitude, and relative to the greater of the initial angular momentum and that of a body which turns once an
-  /// orbit. `orbit` may be empty if there are no torques.
+  /// Makes a body. `inertia_kgm2`: about the centre of mass, in body axes (check_inertia). `tolerance`: local error a
+  /// step, in rad of attitude, and relative to the greater of the initial angular momentum and that of a body which
+  /// turns once an orbit. `orbit` may be empty if there are no torques.
   RigidBody(const fsw::Matrix3& inertia_kgm2, std::vector<std::unique_ptr<Torque>> torques, OrbitOfTime orbit,
             double tolerance, double seconds, const AttitudeState& start);
 
   void advance_to(double seconds, double orbit_step_end) override;
 
-  /// For a torque-free body, which needs no orbit.
+  /// Advances a torque-free body, which needs no orbit.
   void advance_to(double seconds) { advance_to(seconds, std::numeric_limits<double>::infinity()); }
 
   void orbit_changed(double seconds) override;

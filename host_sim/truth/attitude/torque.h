@@ -32,7 +32,7 @@ class Torque {
   [[nodiscard]] virtual int edge_count() const { return 0; }
   [[nodiscard]] virtual double edge(int /*index*/, const ForceInput& /*orbit*/) const { return 1.0; }
 
-  /// From here on (until the next call) the motion is on this side of the edge: edge() positive, or not.
+  /// Sets the side: from here on (until the next call) the motion is on this side of the edge: edge() positive, or not.
   virtual void set_side(int /*index*/, bool /*positive*/) {}
 
   /// Returns the first date (seconds after the epoch) after `seconds` at which it jumps by itself.
@@ -40,7 +40,8 @@ class Torque {
     return std::numeric_limits<double>::infinity();
   }
 
-  /// The motion (re)starts at `seconds`: until the next jump the torque is that of the interval that begins here.
+  /// Enters the interval in which the motion (re)starts at `seconds`: until the next jump the torque is that of the
+  /// interval that begins here.
   virtual void enter_interval(double /*seconds*/) {}
 };
 

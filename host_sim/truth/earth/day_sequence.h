@@ -11,7 +11,7 @@ inline constexpr int kLastDataMjd = 88068;   // 2099-12-31
 
 class DaySequence {
  public:
-  /// The day of the current line. Throws files::FormatError if it does not follow the one before.
+  /// Takes the day of the current line. Throws files::FormatError if it does not follow the one before.
   void take(const files::TextLines& lines, int mjd_utc);
 
  private:

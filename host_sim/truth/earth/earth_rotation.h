@@ -52,7 +52,7 @@ fsw::Matrix3 R_itrf_gcrf(const CelestialPole& pole, double era, double pole_x, d
 /// The real Earth's rotation about one epoch. Not thread-safe: one object per thread.
 class EarthRotation {
  public:
-  /// `orientation` must not be null.
+  /// Makes the rotation; `orientation` must not be null.
   EarthRotation(std::shared_ptr<const EarthOrientationSeries> orientation, fsw::GpsTime epoch);
 
   /// Returns the rotation to ITRF from GCRF `seconds` after the epoch. Throws std::out_of_range outside the Earth

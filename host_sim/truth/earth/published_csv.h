@@ -15,7 +15,7 @@ class PublishedCsv {
  public:
   using Values = std::vector<std::string_view>;  ///< without blanks about them
 
-  /// Goes to the first line. `lines` must outlive it.
+  /// Reads the header, then goes to the first line. `lines` must outlive it.
   PublishedCsv(files::TextLines& lines, char separator);
 
   /// Throws files::FormatError if no column has the name.

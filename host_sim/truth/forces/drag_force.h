@@ -27,9 +27,9 @@ namespace vbar::truth {
 
 class DragForce final : public Force {
  public:
-  /// `tables` and `space_weather` are shared between spacecraft and must not be null; `epoch` is what ForceInput's
-  /// seconds count from. Throws std::invalid_argument unless mass, drag area and drag coefficient are above zero and
-  /// finite; std::out_of_range if the epoch is outside the space weather data.
+  /// Makes the force. `tables` and `space_weather` are shared between spacecraft and must not be null; `epoch` is what
+  /// ForceInput's seconds count from. Throws std::invalid_argument unless mass, drag area and drag coefficient are
+  /// above zero and finite; std::out_of_range if the epoch is outside the space weather data.
   DragForce(const SurfaceProperties& spacecraft, std::shared_ptr<const Nrlmsise00Tables> tables,
             std::shared_ptr<const SpaceWeather> space_weather, GeomagneticIndex geomagnetic_index, fsw::GpsTime epoch);
 

@@ -44,7 +44,7 @@ class Force {
   virtual int edge_count() const { return 0; }
   virtual double edge(int /*index*/, const ForceInput& /*input*/) const { return 1.0; }
 
-  /// From here on (until the next call) the motion is on this side of the edge: edge() positive, or not.
+  /// Sets the side: from here on (until the next call) the motion is on this side of the edge: edge() positive, or not.
   virtual void set_side(int /*index*/, bool /*positive*/) {}
 
   /// Returns the longest step, s, over which it is smooth enough from here on, on the sides that were set: queried at
@@ -54,7 +54,8 @@ class Force {
   /// Returns the first date (seconds after the epoch) after `seconds` at which it jumps by itself.
   virtual double next_jump_after(double /*seconds*/) const { return std::numeric_limits<double>::infinity(); }
 
-  /// The motion (re)starts at `seconds`: until the next jump the force is that of the interval that begins here.
+  /// Enters the interval in which the motion (re)starts at `seconds`: until the next jump the force is that of the
+  /// interval that begins here.
   virtual void enter_interval(double /*seconds*/) {}
 };
 

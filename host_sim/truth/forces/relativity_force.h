@@ -11,7 +11,7 @@ namespace vbar::truth {
 
 class RelativityForce final : public Force {
  public:
-  /// `gm`: the Earth's, m^3/s^2.
+  /// Makes the force; `gm` is the Earth's, m^3/s^2.
   explicit RelativityForce(double gm) : gm_(gm) {}
 
   std::string_view name() const override { return "relativity"; }

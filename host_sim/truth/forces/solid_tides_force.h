@@ -14,8 +14,8 @@ namespace vbar::truth {
 /// One object per spacecraft, as it caches the sums of step 2.
 class SolidTidesForce final : public Force {
  public:
-  /// `gm` (m^3/s^2), `radius` (m) and `tide_system` of the gravity model that it goes with; `orientation` of the days
-  /// to come must not be null.
+  /// Makes the force from `gm` (m^3/s^2), `radius` (m) and `tide_system` of the gravity model that it goes with;
+  /// `orientation` of the days to come must not be null.
   SolidTidesForce(double gm, double radius, TideSystem tide_system, fsw::GpsTime epoch,
                   std::shared_ptr<const EarthOrientationSeries> orientation);
 

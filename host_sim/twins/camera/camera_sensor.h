@@ -33,7 +33,7 @@ class CameraSensor final : public PacketSource {
 
   /// Throws std::invalid_argument if a recipe cannot hold the models of the mount (logged_image.h).
   CameraSensor(const Settings& settings, std::unique_ptr<ImageTaker> taker);
-  /// The digital camera. `renderer` is called on the sensor's own thread.
+  /// Makes the digital camera. `renderer` is called on the sensor's own thread.
   CameraSensor(const Settings& settings, Renderer renderer)
       : CameraSensor(settings, std::make_unique<ImageMaker>(settings.image, std::move(renderer))) {}
 

@@ -32,7 +32,7 @@ struct HotPixel {
 
 class Detector {
  public:
-  /// The region of `settings` must not be empty. `camera_name` names the detector's random numbers.
+  /// Makes a detector. The region of `settings` must not be empty. `camera_name` names the detector's random numbers.
   Detector(const CameraSettings& settings, std::uint64_t seed, std::string_view camera_name);
 
   /// Makes a detector whose hot pixels are known, so that all its regions have the same ones: those of `hot_pixels`

@@ -15,7 +15,7 @@ struct EarthSight {
 
 class EarthDisc {
  public:
-  /// `position_eci`: of the camera, outside the Earth; `sun_eci`: both geocentric, m.
+  /// Makes the disc. `position_eci`: that of the camera, outside the Earth; `sun_eci`: both geocentric, m.
   EarthDisc(const fsw::Vector3& position_eci, const fsw::Vector3& sun_eci);
 
   /// Returns the sight of the Earth along `direction_eci` (unit); `blur`: rad, positive.

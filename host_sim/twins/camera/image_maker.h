@@ -32,7 +32,7 @@ class ImageMaker final : public ImageTaker {
     std::uint8_t unit = 0;        ///< number of the camera
   };
 
-  /// `renderer` must not be empty.
+  /// Makes a camera; `renderer` must not be empty.
   ImageMaker(const Settings& settings, Renderer renderer);
 
   /// Takes an image: a pure function of the settings and the exposure.

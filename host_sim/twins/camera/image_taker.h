@@ -26,7 +26,7 @@ class ImageTaker {
 
   // As those of PacketSource.
   virtual void start(fsw::GpsTime first_epoch) { static_cast<void>(first_epoch); }
-  /// From another thread than take(), which then returns without delay.
+  /// Stops the taker, from another thread than take(), which then returns without delay.
   virtual void stop(StopReason reason) { static_cast<void>(reason); }
 
   /// Takes an image, on the sensor's own thread, always the same one. An exception ends the run.

@@ -39,7 +39,7 @@ class SceneRenderer {
                 ObjectRenderer objects = {}, ObjectCover covers = {},
                 std::shared_ptr<const Projection> projection = nullptr);
 
-  /// Expected photo-electrons of the region that is read, replacing `image`. No dark current, no noise.
+  /// Renders the expected photo-electrons of the region that is read, replacing `image`. No dark current, no noise.
   void render(const Exposure& exposure, PhotonImage& image);
 
  private:

@@ -61,9 +61,10 @@ struct ReceiverTruth {
 
 class GnssReceiver final : public ReceiverBytes {
  public:
-  /// `name` is the spacecraft's (with the receiver's number, if it has several): it names all random streams, so that
-  /// neither another receiver nor another setting changes this one's draws. `constellation` must not be null and may be
-  /// shared. Throws std::invalid_argument for settings, std::runtime_error for the data directory's antenna pattern.
+  /// Makes a receiver. `name` is the spacecraft's (with the receiver's number, if it has several): it names all random
+  /// streams, so that neither another receiver nor another setting changes this one's draws. `constellation` must not
+  /// be null and may be shared. Throws std::invalid_argument for settings, std::runtime_error for the data directory's
+  /// antenna pattern.
   GnssReceiver(const GnssReceiverSettings& settings, std::shared_ptr<const Constellation> constellation,
                const std::filesystem::path& data_directory, std::uint64_t seed, const std::string& name);
 

@@ -84,14 +84,14 @@ struct RangeRecord {
 };
 void append_range(Bytes& bytes, const Header& header, std::span<const RangeRecord> records);
 
-/// GPS ephemeris as subframes; `heard` is when the first began.
+/// Appends a GPS ephemeris as subframes; `heard` is when the first began.
 void append_rawephem(Bytes& bytes, const Header& header, const BroadcastSet& set, fsw::GpsTime heard);
-/// GPS ephemeris as numbers.
+/// Appends a GPS ephemeris as numbers.
 void append_gpsephem(Bytes& bytes, const Header& header, const BroadcastSet& set, fsw::GpsTime heard);
 void append_galephemeris(Bytes& bytes, const Header& header, const BroadcastSet& set);
 void append_bdsephemeris(Bytes& bytes, const Header& header, const BroadcastSet& set);
 
-/// Ionosphere and UTC; `utc` as of the header's time.
+/// Appends ionosphere and UTC; `utc` as of the header's time.
 void append_ionutc(Bytes& bytes, const Header& header, const BroadcastCorrections& corrections, const UtcOffset& utc);
 
 /// BESTXYZ: a single-point solution, or "insufficient observations" if `solved` is false.
@@ -106,7 +106,7 @@ struct PositionRecord {
 };
 void append_bestxyz(Bytes& bytes, const Header& header, const PositionRecord& position);
 
-/// BESTPOS: the same in geodetic coordinates, height above the ellipsoid.
+/// Appends BESTPOS: the position in geodetic coordinates, height above the ellipsoid.
 void append_bestpos(Bytes& bytes, const Header& header, const PositionRecord& position);
 
 /// TIME: the clock's offset as the receiver estimates it (GPS time = receiver time - offset), and UTC.
@@ -132,7 +132,7 @@ struct StatusEvent {
 };
 void append_status_event(Bytes& bytes, const Header& header, const StatusEvent& event);
 
-/// The answer to the binary command `id`.
+/// Appends the answer to the binary command `id`.
 void append_response(Bytes& bytes, const Header& header, std::uint16_t id, std::uint32_t response,
                      std::string_view text);
 

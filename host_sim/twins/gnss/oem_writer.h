@@ -32,7 +32,7 @@ class MessageWriter {
   void zeros(int count) {
     for (int k = 0; k < count; ++k) u8(0);
   }
-  /// A field of `size` characters, cut or filled with zeros.
+  /// Writes a field of `size` characters, cut or filled with zeros.
   void text(std::string_view value, std::size_t size) {
     for (std::size_t k = 0; k < size; ++k) u8(k < value.size() ? static_cast<std::uint8_t>(value[k]) : 0);
   }

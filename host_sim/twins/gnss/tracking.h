@@ -37,8 +37,8 @@ class SatelliteTracking {
   SatelliteTracking(SatelliteId satellite, const StartSettings& start, const TrackingSettings& tracking,
                     std::uint64_t seed, std::string_view receiver);
 
-  /// One epoch. `cn0_dbhz` has one value for each of signals(), in order; empty if the satellite is not visible.
-  /// `first` is the epoch at which the receiver was switched on.
+  /// Updates the tracking by one epoch. `cn0_dbhz` has one value for each of signals(), in order; empty if the
+  /// satellite is not visible. `first` is the epoch at which the receiver was switched on.
   void update(fsw::GpsTime now, bool first, const std::vector<double>& cn0_dbhz);
 
   /// Loses all signals: they are searched at the next update.

@@ -55,10 +55,10 @@ struct PublishedWeather {
 /// Collects the rows of a CSSI file as days without gaps.
 class WeatherCollector {
  public:
-  /// A day that follows the one before. If a value is missing, or a flux 0, the day is kept as one without data.
+  /// Adds a day that follows the one before. If a value is missing, or a flux 0, the day is kept as one without data.
   void add_day(const files::TextLines& lines, const PublishedWeather& row, SpaceWeather::Kind kind);
 
-  /// The first of a month, which has no geomagnetic index: the days since the row before get fluxes by linear
+  /// Adds the first day of a month, which has no geomagnetic index: the days since the row before get fluxes by linear
   /// interpolation and SpaceWeather::kAssumedAp. A month within the days that are there, or without a flux, is left
   /// out.
   void add_month(const files::TextLines& lines, const PublishedWeather& row);

@@ -45,7 +45,7 @@ class TargetRenderer {
   /// not finite or the camera is inside the sphere around the body.
   void render(const TargetView& view, std::vector<LightSample>& out);
 
-  /// Other materials for the faces, as many as the model has. Throws std::runtime_error as check_materials does.
+  /// Sets other materials for the faces, as many as the model has. Throws std::runtime_error as check_materials does.
   void set_materials(std::span<const Material> materials);
 
   /// Returns the number of texels on a side of the last picture.

@@ -10,10 +10,11 @@ namespace vbar::twins::gnss {
 
 class LeftOut {
  public:
-  /// A record of another system or message, which every file of several systems holds: "GLONASS", "Galileo F/NAV".
+  /// Adds a record of another system or message, which every file of several systems holds: "GLONASS", "Galileo F/NAV".
   void add(std::string_view kind) { entry(kind).count += 1; }
 
-  /// A set that would be used if it were right. `first`: satellite, line and reason, kept of the first of its kind.
+  /// Adds a set that would be used if it were right. `first`: satellite, line and reason, kept of the first of its
+  /// kind.
   void add_defective(std::string_view kind, const std::string& first);
 
   [[nodiscard]] bool is_empty() const { return entries_.empty(); }

@@ -13,7 +13,7 @@ namespace vbar::twins::gnss {
 /// Goes through the records of a file of version 2, 3 or 4 behind its header.
 class RinexRecords {
  public:
-  /// `lines` must outlive it. `used`: the systems whose sets are read.
+  /// Makes a reader. `lines` must outlive it. `used`: the systems whose sets are read.
   RinexRecords(files::TextLines& lines, int version, const SystemSet& used)
       : lines_(lines), version_(version), used_(used) {
     advance();
