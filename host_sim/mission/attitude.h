@@ -37,7 +37,7 @@ struct Commanded {
   double control_error = 0.0;  ///< rad, 1 sigma of each axis over time
 };
 
-/// The pointing profiles need no draws.
+/// Any profile; the pointing profiles need no draws.
 using Attitude = std::variant<Tumble, Inertial, truth::PointedSettings, Commanded>;
 
 /// An element of attitude.then: the profile that replaces the one before.

@@ -77,7 +77,7 @@ struct FlightComputer {
   std::int64_t step_budget = 0;
 };
 
-/// What a kind of sensor has read from the table of one sensor: each kind derives its own settings.
+/// Settings that a kind of sensor has read from the table of one sensor: each kind derives its own settings.
 struct SensorSettings {
   SensorSettings() = default;
   SensorSettings(const SensorSettings&) = default;
@@ -87,11 +87,11 @@ struct SensorSettings {
   std::string source;         ///< provider of its data: "digital", "recorded" or the name of a testbed
   std::filesystem::path log;  ///< of source "recorded": the packet log
   std::string observed;       ///< the other spacecraft that it measures or exchanges data with; empty: none
-  /// What navigation uses it for: a sum of navigation_configuration::kUse (vbar.lcm); 0: nothing.
+  /// Uses by navigation: a sum of navigation_configuration::kUse (vbar.lcm); 0: nothing.
   std::int32_t navigation = 0;
 };
 
-/// What a kind of sensor has read from tables of the document, for all of its sensors.
+/// Settings that a kind of sensor has read from tables of the document, for all of its sensors.
 struct SharedSettings {
   SharedSettings() = default;
   SharedSettings(const SharedSettings&) = default;
@@ -160,7 +160,7 @@ struct Fault {
   std::string observed;    ///< kTargetTurned: the spacecraft in its images
   std::string satellite;   ///< kCycleSlip: "G05", "highest" or "all"
   std::string start;       ///< as in the file: "waypoint:9"; empty: a time
-  /// Empty if `begin` is known: before the run, or since the event has happened.
+  /// Event that begins the fault; empty if `begin` is known: before the run, or since the event has happened.
   std::optional<FaultEvent> awaited;
   fsw::GpsTime begin;                     ///< kNever while an event is awaited
   std::optional<fsw::Duration> duration;  ///< empty: to the end
@@ -223,7 +223,7 @@ struct Waypoint {
   std::optional<double> keep_out_radius_m;  ///< radius for the leg that ends here; default: that of guidance
 };
 
-/// Numbers as in vbar.lcm, mode_command.
+/// Mode of guidance; numbers as in vbar.lcm, mode_command.
 enum class Mode : std::int8_t { kIdle = 0, kApproach = 1, kStationKeeping = 2, kHold = 3, kRetreat = 4 };
 
 /// Telecommands to the flight software at the start.
@@ -233,7 +233,7 @@ struct Guidance {
   vbar::gnc_configuration configuration{};
 };
 
-/// What is known of the target's orbit at the start.
+/// Knowledge of the target's orbit at the start.
 enum class Apriori : std::int8_t { kNone = 0, kOrbit = 1, kRoe = 2 };
 
 /// [navigation]: telecommands to navigation that do not depend on its sensors.
@@ -258,7 +258,7 @@ enum class ImagesInLog {
   kTiles,    ///< their packets
 };
 
-/// What a run leaves besides its summary with the hashes of its outputs.
+/// Outputs of a run besides its summary with the hashes of its outputs.
 struct Record {
   ImagesInLog images = ImagesInLog::kRecipes;
   bool packets = true;  ///< the log of all packets

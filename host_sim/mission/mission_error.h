@@ -6,7 +6,7 @@
 
 namespace vbar::mission {
 
-/// what() is "<where>: <key>: found <found>; accepted: <accepted>".
+/// Error of a mission file; what() is "<where>: <key>: found <found>; accepted: <accepted>".
 class MissionError : public std::runtime_error {
  public:
   /// Composes the message. `where`: "file:line", a file alone, or "--set path=value". `key`: the dotted path; empty if

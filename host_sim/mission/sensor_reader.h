@@ -26,7 +26,7 @@ struct SensorContext {
   const std::vector<std::string>& spacecraft_names;  ///< names of all spacecraft
 };
 
-/// All functions throw MissionError.
+/// Reader of a kind of sensor; all functions throw MissionError.
 struct SensorReader {
   std::string_view name;   ///< the value of `kind`
   std::string_view table;  ///< table of the document that only this kind reads; empty: none

@@ -42,7 +42,8 @@ struct AcceptedKey {
   friend bool operator==(const AcceptedKey&, const AcceptedKey&) = default;
 };
 
-/// A key that has been read is a known key: finish() rejects all others, so that no list of keys is needed.
+/// Reads one table; a key that has been read is a known key: finish() rejects all others, so that no list of keys is
+/// needed.
 class TableReader {
  public:
   /// Reads the document `table`, which must outlive the reader and all readers of its inner tables; `file` is the

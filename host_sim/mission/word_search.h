@@ -7,7 +7,7 @@
 
 namespace vbar::mission {
 
-/// How well a text answers a search, in ascending order.
+/// Quality of the match of a text with a search, in ascending order.
 enum class Match {
   kNone,
   kWordStart,  ///< a word of the text begins with it: "hold" and "holdover"

@@ -27,7 +27,7 @@ struct Keyword {
 /// Whether the first line, comments aside, is that of a message of this kind ("CCSDS_OEM_VERS").
 [[nodiscard]] bool begins_with(std::string_view text, std::string_view version_keyword);
 
-/// Names of the keywords of which a block holds one each.
+/// Holds the names of the keywords of which a block holds one each.
 class UniqueKeywords {
  public:
   /// Throws files::FormatError at the current line for a second one of the name.
@@ -46,7 +46,7 @@ struct MessageFrame {
   Eigen::Matrix3d R_frame_message = Eigen::Matrix3d::Identity();
 };
 
-/// What the metadata of both say.
+/// Metadata that both messages have.
 struct Metadata {
   std::string object, object_id;
   std::optional<TimeSystem> time_system;

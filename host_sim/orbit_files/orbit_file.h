@@ -91,7 +91,7 @@ struct OrbitFormat {
 /// std::runtime_error that names the objects of the file.
 [[nodiscard]] OrbitFile tracks_of(const OrbitFile& file, std::string_view object);
 
-/// How a state between those of a file was found, and how far it may be off.
+/// Rule by which a state between those of a file was found, and bounds of its error.
 struct InterpolationCheck {
   InterpolationRule rule;
   double step_s = 0.0;              ///< between the states on either side

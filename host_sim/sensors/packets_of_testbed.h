@@ -12,10 +12,10 @@
 
 namespace vbar::sensors {
 
-/// Why a packet of an allowed message cannot be a measurement of the sensor; empty if it can.
+/// Returns why a packet of an allowed message cannot be a measurement of the sensor; empty if it can.
 using FaultOfValue = std::function<std::string(const fsw::packets::PacketView&)>;
 
-/// What is accepted of one epoch: packets beyond are rejected.
+/// Limits of one epoch: packets beyond are rejected.
 struct PacketLimits {
   std::size_t packets_max = 65535;
   FaultOfValue fault_of_value = {};

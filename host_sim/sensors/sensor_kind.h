@@ -51,7 +51,7 @@ class Telecommands {
   std::vector<twins::Packet> packets_;
 };
 
-/// What is known on the ground when the telecommands of the start are made.
+/// Data that are known on the ground when the telecommands of the start are made.
 struct TelecommandContext {
   const mission::Mission& mission;
   const mission::Spacecraft& servicer;  ///< carries the flight software
@@ -86,7 +86,7 @@ struct MakeContext {
   std::vector<std::string>& data_notes;  ///< on files that are left out in part: report::Summary::data_notes
 };
 
-/// What the packets of a log are restored for.
+/// Run for which the packets of a log are restored.
 struct RestoreContext {
   const mission::Mission& mission;
   const mission::Spacecraft& servicer;  ///< carries the sensors and the flight software; outlives what is made
@@ -105,7 +105,7 @@ struct SensorKind : mission::SensorReader {
                     report::RunFacts& facts) = nullptr;
   /// Compares the measurements of the sensor with the truth. Null, or a null result: nothing does.
   std::unique_ptr<Evaluation> (*evaluate)(const mission::Sensor& sensor, const EvaluationContext& context) = nullptr;
-  /// The evaluation receives the truth of each measurement.
+  /// Whether the evaluation receives the truth of each measurement.
   bool compares_measurements = false;
   /// Tables, summary figures and report section, for all sensors of the kind together.
   report::Extension report{};

@@ -16,10 +16,10 @@ namespace vbar::training {
 /// Its exposure is kNominalExposureS.
 [[nodiscard]] twins::camera::CameraSettings close_range_camera(const std::filesystem::path& data_directory);
 
-/// A white surface that faces the Sun and the camera fills 60 % of the full well.
+/// Exposure at which a white surface that faces the Sun and the camera fills 60 % of the full well.
 inline constexpr double kNominalExposureS = 47e-6;
 
-/// Camera axes: z boresight, x right, y down.
+/// Scene of a crop. Camera axes: z boresight, x right, y down.
 struct Circumstances {
   fsw::Vector3 centre_of_mass_camera = fsw::Vector3::Zero();  ///< position of the target's centre of mass, m
   fsw::Matrix3 R_camera_body = fsw::Matrix3::Identity();

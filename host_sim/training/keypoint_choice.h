@@ -24,7 +24,7 @@ struct ChosenKeypoint {
                                                            const fsw::Vector3& centre_of_mass_body, std::size_t count);
 
 inline constexpr double kMaxSeenShare = 0.85, kMinSeenShare = 0.5;
-/// In radii of the model: closer ones would merge in a heatmap.
+/// Minimum separation in radii of the model: closer ones would merge in a heatmap.
 inline constexpr double kMinSeparation = 0.2;
 
 /// Returns the share of all directions from which the surface does not hide a point.

@@ -39,12 +39,12 @@ struct ForceRegime {
   double longest_step = std::numeric_limits<double>::infinity();
 };
 
-/// Not thread-safe: one object per spacecraft.
+/// Equations of motion of one spacecraft. Not thread-safe: one object per spacecraft.
 class SpacecraftDynamics {
  public:
-  /// A spacecraft this low (m, above a sphere of the Earth's radius, so up to 101 km above the ellipsoid near a pole)
-  /// has re-entered: no orbit is completed there (perigees of the last orbits of real satellites lie at 80 to 90 km,
-  /// McDowell 2018), and free-molecular drag no longer applies.
+  /// Altitude of re-entry. A spacecraft this low (m, above a sphere of the Earth's radius, so up to 101 km above the
+  /// ellipsoid near a pole) has re-entered: no orbit is completed there (perigees of the last orbits of real satellites
+  /// lie at 80 to 90 km, McDowell 2018), and free-molecular drag no longer applies.
   static constexpr double kReentryAltitude = 80e3;
 
   /// Makes the dynamics: `name` for messages; `gm` (m^3/s^2) and `earth_radius` (m) of the central body; forces beside

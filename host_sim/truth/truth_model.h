@@ -28,8 +28,9 @@ struct TruthStatistics {
   double wall_s = 0.0;             ///< wall-clock time spent inside the model; of all only
 };
 
-/// Every spacecraft has its own integrator with the same settings, and its steps depend on its own state and impulses
-/// only: not on the times asked for, the other spacecraft, or the number of threads. All calls from one thread.
+/// Truth of all spacecraft. Every spacecraft has its own integrator with the same settings, and its steps depend on its
+/// own state and impulses only: not on the times asked for, the other spacecraft, or the number of threads. All calls
+/// from one thread.
 class TruthModel {
  public:
   /// Loads the data. Throws std::invalid_argument for a setting out of range, std::runtime_error for a missing or

@@ -36,9 +36,10 @@ struct TruthSettings {
   static constexpr const char* kNone = "none";
   static constexpr const char* kConstant = "constant";
 
-  /// Below it rounding would determine the step size.
+  /// Smallest tolerance: below it rounding would determine the step size.
   static constexpr double kSmallestTolerance = 1e-14;
-  /// Above it the error of a day reaches the size of the orbit: the steps no longer resolve the forces.
+  /// Largest tolerance: above it the error of a day reaches the size of the orbit: the steps no longer resolve the
+  /// forces.
   static constexpr double kLargestTolerance = 1e-6;
 };
 

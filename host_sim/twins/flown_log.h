@@ -14,13 +14,13 @@
 
 namespace vbar::twins {
 
-/// Records are missing from the middle of a log; the message names file and place.
+/// Error: records are missing from the middle of a log; the message names file and place.
 class ThinnedLog : public DamagedLog {
  public:
   using DamagedLog::DamagedLog;
 };
 
-/// The repetition differs from the log; the message names step and packet.
+/// Error: the repetition differs from the log; the message names step and packet.
 class FlownOtherwise : public std::runtime_error {
  public:
   FlownOtherwise(fsw::GpsTime time, const std::string& what) : std::runtime_error(what), time_(time) {}

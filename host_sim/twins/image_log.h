@@ -15,7 +15,7 @@ namespace vbar::twins {
 /// Writes such a log. Tiles of images of which it was given neither recipe nor recording stay whole.
 class ImageLogWriter {
  public:
-  /// What a tile is replaced by.
+  /// Form of a tile in the log.
   enum class Tiles {
     kAsRuns,
     kWhole,  ///< nothing: recipes are not kept; recordings are, so that an image is in the log before it is used

@@ -12,7 +12,7 @@
 
 namespace vbar::twins {
 
-/// The file is not a log, or damaged; the message names file and byte offset.
+/// Error: the file is not a log, or damaged; the message names file and byte offset.
 class DamagedLog : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -53,7 +53,7 @@ struct LcmEvent {
 /// Returns the record and, if the packet is whole and holds an LCM message, the message.
 [[nodiscard]] std::vector<LcmEvent> lcm_events_of(const PacketRecord& record);
 
-/// Is given every event of a new log except its end, before it is written. An exception leaves it out.
+/// Receives every event of a new log except its end, before it is written. If it throws, the event is left out.
 using EventCheck = std::function<void(fsw::GpsTime time, const LcmEvent& event)>;
 
 /// Returns an event's time in the log, us: that of LCM.
@@ -105,7 +105,7 @@ struct EventGap {
   std::int64_t before = 0, after = 0;
 };
 
-/// What a log holds in place of image tiles, in the order of the file and as encoded.
+/// Data that a log holds in place of image tiles, in the order of the file and as encoded.
 struct ImagesOfLog {
   struct Recording {
     std::uint64_t offset = 0;  ///< offset of the event in the file

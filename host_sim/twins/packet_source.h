@@ -98,7 +98,7 @@ struct Completion {
   std::vector<Packet> packets;
   std::vector<Note> notes;
   std::string failure = {};  ///< if there are no packets: the reason, one sentence
-  /// As Measurement::recording, of an image that was taken after measure().
+  /// Recording as Measurement::recording, for an image that was taken after measure().
   std::optional<LoggedImage> recording = std::nullopt;
 };
 
@@ -122,7 +122,7 @@ struct Measurement {
   std::string reason;  ///< kFailed: one sentence
 };
 
-/// What befalls a simulated device between two measurements.
+/// Upset of a simulated device between two measurements.
 struct Upset {
   enum class Kind : std::uint8_t {
     kCycleSlip,  ///< carriers slip by `value` whole cycles, undetected by the receiver
@@ -131,8 +131,8 @@ struct Upset {
   };
   Kind kind = Kind::kReset;
   double value = 0.0;
-  /// kCycleSlip: "G05"; "highest", that of the highest elevation at the last epoch; "all", each by another multiple of
-  /// `value`.
+  /// Satellite of kCycleSlip: "G05"; "highest", that of the highest elevation at the last epoch; "all", each by another
+  /// multiple of `value`.
   std::string satellite = {};
 };
 

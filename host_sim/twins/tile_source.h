@@ -29,7 +29,7 @@ class TileSource {
   [[nodiscard]] virtual std::optional<LoggedImage> recording_at(fsw::GpsTime exposure) const = 0;
 };
 
-/// Makes it from the images of a log. Throws DamagedLog.
+/// Makes a TileSource from the images of a log. Throws DamagedLog.
 using MakeTileSource = std::function<std::unique_ptr<TileSource>(ImagesOfLog&&)>;
 
 }  // namespace vbar::twins

@@ -9,7 +9,7 @@
 
 namespace vbar::sensors {
 
-/// A camera as files say it: pixel by pixel, and how many of them are summed.
+/// Camera as files state it: single pixels, and the number of them that is summed.
 struct CameraFile {
   twins::camera::CameraSettings single;  ///< camera of single pixels
   int binning = 1;                       ///< so many pixels each way are summed into one: 1, 2 or 4

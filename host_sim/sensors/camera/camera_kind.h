@@ -13,7 +13,7 @@
 
 namespace vbar::sensors {
 
-/// `observed` is the spacecraft that it navigates to.
+/// Settings of a camera; `observed` is the spacecraft that it navigates to.
 struct CameraSensor : mission::SensorSettings {
   std::string camera;  ///< its file as the mission names it, which `settings` began with
   twins::camera::CameraSettings settings;
@@ -44,7 +44,7 @@ struct CameraSensor : mission::SensorSettings {
 /// be those of a calibrated copy.
 [[nodiscard]] std::uint8_t camera_unit(const mission::Sensor& sensor, const mission::Spacecraft& carrier);
 
-/// [navigation.angles_only] and [navigation.pose]: what does not depend on camera and target.
+/// Settings of [navigation.angles_only] and [navigation.pose] that do not depend on camera and target.
 struct CameraShared : mission::SharedSettings {
   vbar::angles_only_configuration angles_only{};
   vbar::pose_configuration pose{};

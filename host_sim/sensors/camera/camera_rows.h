@@ -11,7 +11,7 @@
 
 namespace vbar::sensors {
 
-/// What angles-only navigation said of an image, and what was true at its exposure (images.csv, only if a run has such
+/// Telemetry of angles-only navigation on an image, and the truth at its exposure (images.csv, only if a run has such
 /// navigation).
 struct ImageRow : telemetry_image {
   ImageRow() : telemetry_image{} {}
@@ -27,7 +27,7 @@ struct ImageRow : telemetry_image {
   std::optional<double> nees;  ///< NEES of the osculating ROE, six degrees of freedom; of images that the filter used
 };
 
-/// What the flight software took an object of an image for (objects.csv).
+/// Kind that the flight software assigned to an object of an image (objects.csv).
 struct ObjectRow {
   double time_s = 0.0;
   std::int32_t image = 0;
@@ -37,8 +37,8 @@ struct ObjectRow {
   float x_px = 0.0F, y_px = 0.0F;  ///< on the detector
 };
 
-/// What navigation by the pose network said of an image, and what was true at its exposure (poses.csv, only if a run
-/// has such navigation). The keypoints are rows of their own.
+/// Telemetry of navigation by the pose network on an image, and the truth at its exposure (poses.csv, only if a run has
+/// such navigation). The keypoints are rows of their own.
 struct PoseRow : telemetry_pose {
   PoseRow() : telemetry_pose{} {}
   double time_s = 0.0;       ///< middle of the exposure, since the mission's epoch

@@ -22,7 +22,7 @@
 
 namespace vbar::sensors {
 
-/// What the flight software said of an image (telemetry_image, telemetry_objects).
+/// Telemetry of the flight software on an image (telemetry_image, telemetry_objects).
 struct ImageFindings {
   fsw::GpsTime exposure;
   ImageRow row;

@@ -31,7 +31,7 @@ class PoseGallery {
                std::vector<report::GalleryImage>& gallery);
 
  private:
-  /// Large, and only of use where there is a pose network.
+  /// Assembly and network, which are large and only of use where there is a pose network.
   struct Work {
     fsw::imaging::ImageAssembly assembly;
     fsw::network::KeypointNetwork network;

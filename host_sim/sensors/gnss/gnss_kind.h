@@ -13,8 +13,8 @@
 
 namespace vbar::sensors {
 
-/// `observed` is the partner: the spacecraft whose receiver's data come over the crosslink; empty: this one's go to its
-/// partner, or they are all there is, beside a camera of a target that does not cooperate.
+/// Settings of a receiver; `observed` is the partner: the spacecraft whose receiver's data come over the crosslink;
+/// empty: this one's go to its partner, or they are all there is, beside a camera of a target that does not cooperate.
 struct GnssSensor : mission::SensorSettings {
   twins::gnss::GnssReceiverSettings receiver;
   testbeds::ReceiverLine line;  ///< line of a receiver in a testbed

@@ -8,7 +8,7 @@
 
 namespace vbar::sensors {
 
-/// What navigation by GNSS said of itself at a step (gnss.csv, only if a run has such navigation).
+/// Telemetry of navigation by GNSS at a step (gnss.csv, only if a run has such navigation).
 struct GnssRow : telemetry_gnss {
   GnssRow() : telemetry_gnss{} {}
   double time_s = 0.0;

@@ -8,7 +8,7 @@
 
 namespace vbar::sensors {
 
-/// Sigmas are those of double differences. Absent: too few measurements.
+/// Noise of one signal. Sigmas are those of double differences. Absent: too few measurements.
 struct SignalNoiseRow {
   std::string signal;            ///< "GPS L1"
   std::size_t measurements = 0;  ///< differences between the receivers

@@ -21,7 +21,7 @@ struct RangeFinderSettings {
   fsw::Duration period;                                 ///< > 0
 };
 
-/// Where the target is, as the instrument sees it.
+/// Place of the target as the instrument sees it.
 struct LineOfSight {
   double range_m = 0.0;
   double off_boresight_rad = 0.0;

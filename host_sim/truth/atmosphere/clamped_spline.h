@@ -5,7 +5,7 @@
 
 namespace vbar::truth {
 
-/// N points at ascending x.
+/// Spline through N points at ascending x.
 template <int N>
 class ClampedSpline {
  public:

@@ -33,7 +33,7 @@ struct LowerAtmosphereVariations {
   double joint_gradient;               ///< at 32.5 km
 };
 
-/// Computing the series costs some 50 evaluations, so it is done only when day or indices change.
+/// Series of one day. Computing them costs some 50 evaluations, so it is done only when day or indices change.
 class DayExpansions {
  public:
   explicit DayExpansions(std::shared_ptr<const Nrlmsise00Tables> tables) : tables_(std::move(tables)) {}

@@ -8,7 +8,7 @@
 
 namespace vbar::truth {
 
-/// A quantity is quiet + (effective ap) magnetic.
+/// Series of a quantity, which is quiet + (effective ap) magnetic.
 struct ExpansionOfDay {
   HorizontalSeries quiet{};
   HorizontalSeries magnetic{};

@@ -15,7 +15,8 @@ struct SplineLevel {
   double weight = 0.0;       ///< minus the integral of g dz / (R T) from the top node, mol/g
 };
 
-/// N nodes, altitudes (km) descending; temperatures K; gradients K/km at the highest and the lowest node.
+/// Profile through N nodes, altitudes (km) descending; temperatures K; gradients K/km at the highest and the lowest
+/// node.
 template <int N>
 class InverseTemperature {
  public:

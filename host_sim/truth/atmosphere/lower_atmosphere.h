@@ -17,7 +17,7 @@ struct LowerAtmosphereState {
   double temperature = 0.0;  ///< K
 };
 
-/// Immutable; may be shared between threads.
+/// Air below 72.5 km. Immutable; may be shared between threads.
 class LowerAtmosphere {
  public:
   explicit LowerAtmosphere(const Nrlmsise00Tables& tables);

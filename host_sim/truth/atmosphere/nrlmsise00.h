@@ -38,8 +38,8 @@ struct AtmosphereState {
   double exospheric_temperature = 0.0;  ///< K; the mean one at 123.4 km and below
 };
 
-/// Not thread-safe (results that depend on day and indices are cached): one object per thread. The result depends
-/// on the input only.
+/// The model. Not thread-safe (results that depend on day and indices are cached): one object per thread. The result
+/// depends on the input only.
 class Nrlmsise00 {
  public:
   /// Makes the model; `tables`, shared between objects, must not be null.

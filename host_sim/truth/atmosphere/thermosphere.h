@@ -30,7 +30,7 @@ struct ThermosphereState {
   double bottom_gradient = 0.0;         ///< K/km, there
 };
 
-/// Immutable; may be shared between threads.
+/// Air from 72.5 km up. Immutable; may be shared between threads.
 class Thermosphere {
  public:
   static constexpr double kBottomKm = 72.5;

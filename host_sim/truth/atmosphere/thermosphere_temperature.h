@@ -10,7 +10,8 @@
 
 namespace vbar::truth {
 
-/// T(z) = exospheric - (exospheric - boundary) exp(-shape * geopotential altitude above the boundary).
+/// Temperature profile T(z) = exospheric - (exospheric - boundary) exp(-shape * geopotential altitude above the
+/// boundary).
 struct BatesProfile {
   double exospheric = 0.0;   ///< K
   double boundary = 0.0;     ///< K, at boundary_km
@@ -25,7 +26,8 @@ struct LowerThermosphereNodes {
   double bottom_gradient = 0.0;         ///< K/km, at the lowest
 };
 
-/// A species of molar mass M and thermal diffusion coefficient alpha in equilibrium has, relative to the boundary,
+/// Level of the profile. A species of molar mass M and thermal diffusion coefficient alpha in equilibrium has, relative
+/// to the boundary,
 ///   ln n = (1 + alpha) log_cooling + M weight.
 struct ThermosphereLevel {
   double temperature = 0.0;  ///< K

@@ -6,7 +6,7 @@
 
 namespace vbar::truth {
 
-/// Times are seconds after the model's epoch. Not thread-safe: one thread per spacecraft.
+/// Attitude over time. Times are seconds after the model's epoch. Not thread-safe: one thread per spacecraft.
 class AttitudeMotion {
  public:
   AttitudeMotion() = default;

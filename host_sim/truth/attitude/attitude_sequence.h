@@ -14,7 +14,7 @@
 
 namespace vbar::truth {
 
-/// Where a slew begins: the motion that is left and the next one, at that instant.
+/// Beginning of a slew: the motion that is left and the next one, at that instant.
 struct SlewStart {
   AttitudeState from;
   AttitudeState to;

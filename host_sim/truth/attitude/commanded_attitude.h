@@ -42,7 +42,7 @@ inline constexpr double kLongestLine_s = 600.0;
 /// zero or not finite.
 [[nodiscard]] bool leaves_zenith_clear(const fsw::Vector3& boresight_rtn, const fsw::Vector3& rate_rtn);
 
-/// A pure function of the orbit and the commands.
+/// Attitude that is a pure function of the orbit and the commands.
 class CommandedAttitude final : public AttitudeMotion {
  public:
   /// Throws std::invalid_argument for parallel axes, or an initial boresight at the zenith or nadir.

@@ -45,7 +45,7 @@ struct PointingSettings {
 /// Returns whether two directions are always the same or opposite.
 [[nodiscard]] bool are_one_line(Direction a, Direction b);
 
-/// A pure function of the orbits: it holds no state.
+/// Attitude that is a pure function of the orbits: it holds no state.
 class PointingProfile final : public AttitudeMotion {
  public:
   /// Makes a profile. `own` is the motion of the pointing spacecraft; `other` that of the one pointed at, and `sun`,

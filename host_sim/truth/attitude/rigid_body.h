@@ -22,8 +22,8 @@ namespace vbar::truth {
 /// exactly).
 void check_inertia(const fsw::Matrix3& inertia_kgm2);
 
-/// The integrator's steps depend on the start, the torques and the orbit with its steps only: not on the times asked
-/// for, so neither does the motion.
+/// Rotation of one body. The integrator's steps depend on the start, the torques and the orbit with its steps only: not
+/// on the times asked for, so neither does the motion.
 class RigidBody final : public AttitudeMotion {
  public:
   /// The orbit at a time for which it is known; asked for only if there are torques.
@@ -48,7 +48,8 @@ class RigidBody final : public AttitudeMotion {
 
   [[nodiscard]] const IntegrationStatistics& statistics() const { return integrator_.statistics(); }
 
-  /// Not longer than an orbit propagator keeps its steps; a shorter span would limit callers that need both.
+  /// Span of the kept steps: not longer than an orbit propagator keeps its steps; a shorter span would limit callers
+  /// that need both.
   static constexpr double kKeptSpan_s = 900.0;
 
  private:

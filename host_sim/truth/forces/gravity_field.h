@@ -14,7 +14,7 @@
 
 namespace vbar::truth {
 
-/// Immutable once made; may be shared between threads.
+/// Field of a gravity model. Immutable once made; may be shared between threads.
 class GravityField {
  public:
   /// Makes the field up to `degree` and `order` (0 <= order <= degree <= that of the coefficients). Throws

@@ -39,9 +39,9 @@ void add_love_number_response(const TidalBody& body, double radius, LowDegreeCoe
 /// counted once.
 double permanent_tide_c20();
 
-/// Step 2. The sums over the tables' 71 lines are e^(i m (GMST + pi)) times sums that change over days; those are kept
-/// at hours of TT and interpolated by cubics: error under 1e-18, some 1e-5 of the tables' last digit. The result
-/// depends on the date only. Not thread-safe: one object per thread.
+/// Tides of step 2. The sums over the tables' 71 lines are e^(i m (GMST + pi)) times sums that change over days; those
+/// are kept at hours of TT and interpolated by cubics: error under 1e-18, some 1e-5 of the tables' last digit. The
+/// result depends on the date only. Not thread-safe: one object per thread.
 class FrequencyDependentTides {
  public:
   /// Adds the corrections of an instant with Greenwich mean sidereal time `gmst`, rad.

@@ -11,7 +11,7 @@
 
 namespace vbar::truth {
 
-/// One object per spacecraft, as it caches the sums of step 2.
+/// Force of the tides: one object per spacecraft, as it caches the sums of step 2.
 class SolidTidesForce final : public Force {
  public:
   /// Makes the force from `gm` (m^3/s^2), `radius` (m) and `tide_system` of the gravity model that it goes with;

@@ -29,7 +29,7 @@ struct ObjectInView {
   }
 };
 
-/// All at the middle of the exposure; GCRF axes. Positions are geometric. Light time and aberration of a co-moving
+/// Inputs at the middle of the exposure; GCRF axes. Positions are geometric. Light time and aberration of a co-moving
 /// object cancel, so objects are drawn where they are; stars, Sun and Moon are drawn where aberration puts them.
 struct Exposure {
   fsw::GpsTime time;

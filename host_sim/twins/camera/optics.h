@@ -9,8 +9,8 @@
 
 namespace vbar::twins::camera {
 
-/// Pinhole with Brown-Conrady distortion (Brown 1966, in OpenCV's order of coefficients). Camera axes: z boresight,
-/// x right, y down; pixel coordinates are the detector's.
+/// Lens as a pinhole with Brown-Conrady distortion (Brown 1966, in OpenCV's order of coefficients). Camera axes: z
+/// boresight, x right, y down; pixel coordinates are the detector's.
 class Optics final : public Projection {
  public:
   explicit Optics(const CameraSettings& settings);

@@ -15,8 +15,8 @@ struct Cone {
   double half_angle = 0.0;                    ///< rad
 };
 
-/// Camera axes: z boresight, x right, y down. Pixel coordinates are those of the image; an integer is the centre of a
-/// pixel.
+/// Map from directions to pixels. Camera axes: z boresight, x right, y down. Pixel coordinates are those of the image;
+/// an integer is the centre of a pixel.
 class Projection {
  public:
   virtual ~Projection() = default;

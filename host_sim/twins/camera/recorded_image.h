@@ -12,7 +12,7 @@
 
 namespace vbar::twins::camera {
 
-/// What an image is apart from its pixels.
+/// Properties of an image apart from its pixels.
 struct ImageHeader {
   ImageLabel label;
   Region region;

@@ -9,8 +9,8 @@
 
 namespace vbar::twins::gnss {
 
-/// One set of elements. Unlike the broadcast one it names the node by its Earth-fixed longitude at toe, so that it
-/// depends on no week and can be moved to another day; omega0 = node_at_toe + Earth rate * (seconds of week of toe).
+/// Set of elements. Unlike the broadcast one it names the node by its Earth-fixed longitude at toe, so that
+/// it depends on no week and can be moved to another day; omega0 = node_at_toe + Earth rate * (seconds of week of toe).
 /// The clock's reference time is toe.
 struct Ephemeris {
   SatelliteId satellite;

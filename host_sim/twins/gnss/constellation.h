@@ -19,7 +19,7 @@
 
 namespace vbar::twins::gnss {
 
-/// Which satellites of a system fly. kBroadcast: those of the system's real broadcast file (GPS 31 of 2011-10-20; 4
+/// Satellites of a system that fly. kBroadcast: those of the system's real broadcast file (GPS 31 of 2011-10-20; 4
 /// Galileo, 14 BeiDou of 2013-07-19). kNominal: the full constellation by its definition (Galileo: Walker 24/3/1 at 56
 /// deg, 29600.318 km; BeiDou-3: Walker 24/3/1 at 55 deg, 27906.1 km, its medium orbits only); GPS has none.
 enum class SatelliteSet : std::uint8_t { kNone, kBroadcast, kNominal };

@@ -10,7 +10,7 @@
 
 namespace vbar::twins::gnss {
 
-/// In addition to the settings of the link: an interruption, during which no message arrives.
+/// Settings of the link and an interruption, during which no message arrives.
 struct CrosslinkSettings {
   engine::LinkSettings link{.latency = {.kind = engine::LatencyKind::kUniform, .minimum_s = 0.05, .maximum_s = 0.5},
                             .loss_probability = 0.0};

@@ -8,7 +8,7 @@
 
 namespace vbar::twins::gnss {
 
-/// Which signals can reach the receiver.
+/// Limits of the signals that can reach the receiver.
 struct VisibilitySettings {
   double transmit_aperture_deg = 170.0;   ///< A, "GNSS aperture": full cone about the satellite's nadir
   double receiver_mask_deg = 190.0;       ///< A: full cone about the antenna's boresight
@@ -17,7 +17,7 @@ struct VisibilitySettings {
   friend bool operator==(const VisibilitySettings&, const VisibilitySettings&) = default;
 };
 
-/// From transmitted power to C/N0. The antennas of the satellites are isotropic (A: spherical gain).
+/// Link budget from transmitted power to C/N0. The antennas of the satellites are isotropic (A: spherical gain).
 struct LinkBudgetSettings {
   double boresight_gain_dbi = 4.0;  ///< with the pattern of data/gps below it
   double antenna_temperature_k = 130.0;

@@ -59,7 +59,7 @@ struct Header {
   }
 };
 
-/// What the tracking status word says of a channel's loops.
+/// State of a channel's loops in the tracking status word.
 struct TrackingState {
   unsigned state = 4;  ///< 1 search, 2 pull-in, 4 phase lock loop, 7 frequency lock loop
   bool phase_lock = true;

@@ -15,7 +15,7 @@ namespace vbar::twins::gnss::oem {
 /// Computes NovAtel's CRC-32: the standard polynomial, but initialised with 0 and not inverted.
 std::uint32_t crc32(std::span<const std::uint8_t> bytes);
 
-/// The header is written at once, its length and the CRC by finish().
+/// Writer of a message. The header is written at once, its length and the CRC by finish().
 class MessageWriter {
  public:
   MessageWriter(Bytes& bytes, MessageId id, const Header& header, bool is_response = false);

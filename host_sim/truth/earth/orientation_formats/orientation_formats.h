@@ -52,8 +52,8 @@ struct OrientationFormat {
 /// Reads the days of a text in any of the formats. Throws files::FormatError; for an unknown format it names all.
 [[nodiscard]] OrientationDays read_orientation(std::string_view text, const std::string& file);
 
-/// Values of one row in the units of the publications. Refuses what no Earth orientation since 1962 has been near,
-/// which is what other units or another nutation model give.
+/// Values of one row in the units of the publications. orientation_of() rejects values that no Earth orientation since
+/// 1962 has been near, as other units or another nutation model give.
 struct PublishedOrientation {
   double x_arcsec = 0.0, y_arcsec = 0.0, ut1_minus_utc_s = 0.0, dx_arcsec = 0.0, dy_arcsec = 0.0;
 };

@@ -45,7 +45,7 @@ struct WeatherFormat {
 /// Reads the days of a text in any of the formats. Throws files::FormatError; for an unknown format it names all.
 [[nodiscard]] WeatherDays read_weather(std::string_view text, const std::string& file);
 
-/// What both CSSI formats hold of one row; empty where the row is blank.
+/// Values that both CSSI formats hold of one row; empty where the row is blank.
 struct PublishedWeather {
   int mjd_utc = 0;
   std::array<std::optional<double>, 8> ap;

@@ -13,14 +13,14 @@ struct PlainSurface {
   double diffuse = 0.0, specular = 0.0, exponent = 0.0;
 };
 
-/// Which reflectivities the faces have.
+/// Source of the reflectivities of the faces.
 enum class CadMaterials {
   kFile,     ///< those of the file; refused where they reflect more than they receive
   kScaled,   ///< those of the file, both parts divided by their sum where that is more than 1
   kSurface,  ///< the surface, whatever materials the file has
 };
 
-/// A point p of the file lies at R_body_file (unit_m p - origin_m) in the body frame.
+/// File and its axes: a point p of the file lies at R_body_file (unit_m p - origin_m) in the body frame.
 struct CadSource {
   std::filesystem::path file;
   double unit_m = 1.0;                           ///< the unit of the file's coordinates

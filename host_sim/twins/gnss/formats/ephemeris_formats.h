@@ -45,10 +45,10 @@ struct BroadcastRecord {
   double af0 = 0.0, af1 = 0.0, af2 = 0.0;
 };
 
-/// Between the reference times of clock and orbit.
+/// Longest time between the reference times of clock and orbit.
 inline constexpr double kLongestClockAge_s = 86400.0;
 
-/// Galileo has two satellites at 0.16 (E14, E18); the flight software rejects more.
+/// Largest eccentricity. Galileo has two satellites at 0.16 (E14, E18); the flight software rejects more.
 inline constexpr double kMaxEccentricity = 0.2;
 
 /// Returns the defect of a record; empty if it has none.
