@@ -1,6 +1,6 @@
 #pragma once
-// A body file (data/bodies, TOML): mass properties and surface of a spacecraft; of a target that cameras see also its
-// CAD file and its keypoints.
+// A body file (data/bodies, TOML): mass properties and surface of a spacecraft, and, for a target that
+// cameras see, its CAD file and its keypoints.
 
 #include <filesystem>
 #include <map>

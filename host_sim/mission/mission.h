@@ -128,8 +128,8 @@ enum class FaultKind {
   kSilent,             ///< a sensor gives nothing
   kFrozen,             ///< a camera gives its last image again
   kReceiverSilent,     ///< a receiver gives no bytes; attitudes of the same sensor continue
-  kTargetTurned,       ///< a camera sees the target turned by `value`, rad, about its body's x axis
-  kAttitudeError,      ///< attitudes of a sensor are turned by `value`, rad
+  kTargetTurned,       ///< a camera sees the target rotated by `value`, rad, about its body's x axis
+  kAttitudeError,      ///< attitudes of a sensor are rotated by `value`, rad
   kThrustScale,        ///< burns are executed at `value` of their size; 0: not at all
   kThrustUncommanded,  ///< an acceleration of `value` m/s^2 along `direction_rtn`
   kComputerSilent,     ///< the flight computer gets no packets and takes no steps, then continues
@@ -281,7 +281,7 @@ struct Mission {
   std::string truth_source{kTruthModel};  ///< or the name of a testbed; the model then gives the states at the start
   std::vector<Spacecraft> spacecraft;
   Guidance guidance;
-  std::optional<vbar::safety_configuration> safety;  ///< without it neither retreat nor guard
+  std::optional<vbar::safety_configuration> safety;  ///< without it neither retreat nor safety monitor
   Navigation navigation;
   std::vector<std::shared_ptr<const SharedSettings>> shared;  ///< one of each kind of sensor
   std::vector<Testbed> testbeds;

@@ -22,8 +22,8 @@ namespace vbar::mission {
 [[nodiscard]] std::string read_other_spacecraft(const TableReader& section, const std::string& own,
                                                 const std::vector<std::string>& names);
 
-/// Reads the attitude of a spacecraft. `own`: the name of the spacecraft; `body`: its body; `names`: of all spacecraft
-/// of the mission. Nothing for profile = "none", the default. Throws MissionError.
+/// Reads the attitude of a spacecraft. `own`: the name of the spacecraft; `body`: its body; `names`: those of all
+/// spacecraft of the mission. Nothing for profile = "none", the default. Throws MissionError.
 [[nodiscard]] std::optional<Attitude> read_attitude(const TableReader& section, const std::string& own,
                                                     const std::string& body, const std::vector<std::string>& names);
 

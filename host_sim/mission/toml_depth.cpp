@@ -96,7 +96,7 @@ class DepthScan {
     for (; at_ < text_.size(); ++at_) {
       const char c = text_[at_];
       if (c == '\n') {
-        if (!is_long) return;  // not closed: the parser refuses it
+        if (!is_long) return;  // not closed: the parser rejects it
         ++line_;
       }
       if (c == '\\' && quote == '"') {

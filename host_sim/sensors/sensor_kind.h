@@ -100,7 +100,7 @@ struct SensorKind : mission::SensorReader {
   /// Adds the sources of the sensor's packets. Throws what a recorded log and data files throw.
   void (*add_sources)(const mission::Sensor& sensor, const MakeContext& context,
                       std::vector<twins::NamedSource>& sources) = nullptr;
-  /// Adds what the summary says of the sensor: its source, the navigation by it. Null: nothing.
+  /// Adds the facts that the summary states about the sensor: its source, the navigation by it. Null: nothing.
   void (*add_facts)(const mission::Sensor& sensor, const mission::Mission& mission, const mission::Spacecraft& servicer,
                     report::RunFacts& facts) = nullptr;
   /// Compares the measurements of the sensor with the truth. Null, or a null result: nothing does.

@@ -25,7 +25,7 @@ struct Circumstances {
   fsw::Matrix3 R_camera_body = fsw::Matrix3::Identity();
   fsw::Vector3 sun_camera = fsw::Vector3::UnitZ();                   ///< unit
   fsw::Vector3 nadir_camera = fsw::Vector3::UnitY();                 ///< unit
-  Eigen::Quaterniond q_camera_eci = Eigen::Quaterniond::Identity();  ///< turns the sky
+  Eigen::Quaterniond q_camera_eci = Eigen::Quaterniond::Identity();  ///< orientation of the sky
   double phase_angle = 0.0;                                          ///< Sun, target, camera; rad
   double sunlit = 1.0;                                               ///< share of the Sun's disc
   double exposure = 1.0;                                             ///< in kNominalExposureS

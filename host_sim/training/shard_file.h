@@ -6,7 +6,7 @@
 //   then each crop: side x side bytes, min(255, round(4 * sample)), rows from the top; f32 numbers:
 //     0..21   places of the keypoints in cells of a map, x and y
 //     22..32  1 if the keypoint counts, else 0
-//     33..36  q_camera_body: turns body axes into camera axes, x y z w
+//     33..36  q_camera_body: rotates body axes into camera axes, x y z w
 //     37..39  centre of mass in camera axes, m
 //     40..42  centre (x, y) and side of the crop on the detector, px
 //     43..50  camera: focal length, principal point (px), distortion k1 k2 p1 p2 k3

@@ -27,7 +27,7 @@ fsw::GpsTime last_instant(const TruthSettings& settings) {
   return settings.end + fsw::duration_of_seconds(kLongestStep_s);
 }
 
-/// Rejects before the run starts an epoch or end for which `look_up` has no data. `look_up`: of an instant, throws
+/// Rejects before the run starts an epoch or end for which `look_up` has no data. `look_up` takes an instant and throws
 /// std::out_of_range.
 template <class LookUp>
 void check_reach(const TruthSettings& settings, const std::filesystem::path& file, const LookUp& look_up) {

@@ -25,7 +25,7 @@ struct TruthStatistics {
   std::int64_t rejected_steps = 0;
   std::int64_t force_evaluations = 0;
   std::int64_t edges_crossed = 0;  ///< number of shadow edges crossed
-  double wall_s = 0.0;             ///< wall-clock time spent inside the model; of all only
+  double wall_s = 0.0;             ///< wall-clock time spent inside the model; stated for all spacecraft together only
 };
 
 /// Truth of all spacecraft. Every spacecraft has its own integrator with the same settings, and its steps depend on its
@@ -86,7 +86,7 @@ class TruthModel {
 
   /// Gives a spacecraft an attitude from the current time on. Throws std::invalid_argument for inconsistent settings
   /// (an invalid body, parallel axes, an unknown spacecraft to point at). `later`: the attitudes that follow, in order
-  /// of time; of those that begin before the current time, or at it, the last one holds at once, without a slew.
+  /// of time; the last one of those that begin before the current time, or at it, holds at once, without a slew.
   void set_attitude(std::size_t index, const AttitudeSettings& settings,
                     const std::vector<LaterAttitudeSettings>& later = {});
 
@@ -102,7 +102,7 @@ class TruthModel {
   /// where its pointing does not determine it.
   AttitudeState attitude(std::size_t index) const { return attitude_at(index, time_); }
 
-  /// Returns the attitude at another time near the current one, as state_at; of a spacecraft that points at another,
+  /// Returns the attitude at another time near the current one, as state_at; for a spacecraft that points at another,
   /// where the states of both are kept.
   AttitudeState attitude_at(std::size_t index, fsw::GpsTime time) const;
 

@@ -1,4 +1,5 @@
 #pragma once
+// The name under which sources note packets that were not accepted.
 
 #include <string_view>
 

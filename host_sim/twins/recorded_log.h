@@ -21,7 +21,7 @@ class RecordedLog final : public PacketSource {
   struct Selection {
     std::uint8_t spacecraft = 0;
     std::vector<fsw::packets::Apid> apids;
-    std::optional<std::uint8_t> unit = {};  ///< none: of all
+    std::optional<std::uint8_t> unit = {};  ///< none: packets of all units
   };
 
   /// Opens a log. `make_tiles` is needed for logs without the pixels of their images. Throws std::runtime_error, as

@@ -12,7 +12,7 @@ namespace vbar::sensors {
 /// Camera as files state it: single pixels, and the number of them that is summed.
 struct CameraFile {
   twins::camera::CameraSettings single;  ///< camera of single pixels
-  int binning = 1;                       ///< so many pixels each way are summed into one: 1, 2 or 4
+  int binning = 1;                       ///< number of pixels each way that are summed into one: 1, 2 or 4
   /// Settings of the sums, stated where binning was in force already: they are used unchanged.
   std::optional<double> gain_dn_per_electron;
   std::optional<twins::camera::Region> region;

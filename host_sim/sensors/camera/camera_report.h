@@ -33,7 +33,7 @@ struct PoseFigures {
   double keypoint_chi_square = 0.0;  ///< median normalised squared error of those usable; 1.39 if consistent
   /// Position error over the images of a lit target alone, m.
   report::MeanAndDeviation lit_navigation_error_m;
-  std::optional<double> attitude_nees;  ///< mean; turn and rate, 6 if consistent
+  std::optional<double> attitude_nees;  ///< mean of attitude and rate, 6 if consistent
   int attitude_restarts = 0, restarts = 0;
   int without_truth = 0;  ///< images, not evaluated
 };

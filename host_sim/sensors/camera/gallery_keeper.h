@@ -4,7 +4,7 @@
 // Which ones is known beforehand from the times of exposure, so that the pixels of all others need never be looked at:
 // the first image that has a bearing, and the last one before each waypoint and before the end of the run. For these
 // the last images before that time are looked at, and the last one with a bearing is taken, or the last one if none
-// has, because the target spends a part of each orbit in the dark.
+// has, because the target spends a part of each orbit in eclipse.
 
 #include <memory>
 #include <optional>
@@ -26,7 +26,7 @@ namespace vbar::sensors {
 struct ImageFindings {
   fsw::GpsTime exposure;
   ImageRow row;
-  const telemetry_objects* objects = nullptr;   ///< null if it said nothing of them
+  const telemetry_objects* objects = nullptr;   ///< null if telemetry did not report them
   const twins::TruthSnapshot* truth = nullptr;  ///< at the exposure, if it is known
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// What was true of an image that flight software says it has looked at: where the target really was, and how far off
-// bearing, attitude and estimate are.
+// The truth of an image that the flight software has processed: the place of the target, and the errors of bearing,
+// attitude and estimate.
 
 #include <optional>
 

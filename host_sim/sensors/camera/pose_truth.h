@@ -1,5 +1,5 @@
 #pragma once
-// What the flight software said of a pose and its keypoints, and what was true of them.
+// Telemetry of a pose and its keypoints, and their truth.
 
 #include <vector>
 

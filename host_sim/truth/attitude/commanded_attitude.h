@@ -56,8 +56,8 @@ class CommandedAttitude final : public AttitudeMotion {
   void advance_to(double /*seconds*/, double /*orbit_step_end*/) override {}
   void orbit_changed(double /*seconds*/) override {}
 
-  /// Returns attitude and rates, which are exact: of the RTN frame with the true forces, of the command and of the
-  /// control error.
+  /// Returns attitude and rates, which are exact: those of the RTN frame with the true forces, of the command and of
+  /// the control error.
   [[nodiscard]] AttitudeState state_at(double seconds) const override;
 
  private:

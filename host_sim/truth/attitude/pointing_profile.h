@@ -49,7 +49,7 @@ struct PointingSettings {
 class PointingProfile final : public AttitudeMotion {
  public:
   /// Makes a profile. `own` is the motion of the pointing spacecraft; `other` that of the one pointed at, and `sun`,
-  /// are needed only if a direction of the settings says so. Throws std::invalid_argument for parallel body axes,
+  /// are needed only if a direction of the settings requires them. Throws std::invalid_argument for parallel body axes,
   /// directions on one line, and for missing motions that are needed.
   PointingProfile(const PointingSettings& settings, MotionOfTime own, MotionOfTime other, SunOfTime sun);
 

@@ -31,7 +31,7 @@ class RigidBody final : public AttitudeMotion {
 
   /// Makes a body. `inertia_kgm2`: about the centre of mass, in body axes (check_inertia). `tolerance`: local error a
   /// step, in rad of attitude, and relative to the greater of the initial angular momentum and that of a body which
-  /// turns once an orbit. `orbit` may be empty if there are no torques.
+  /// rotates once an orbit. `orbit` may be empty if there are no torques.
   RigidBody(const fsw::Matrix3& inertia_kgm2, std::vector<std::unique_ptr<Torque>> torques, OrbitOfTime orbit,
             double tolerance, double seconds, const AttitudeState& start);
 

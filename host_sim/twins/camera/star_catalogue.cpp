@@ -63,7 +63,7 @@ namespace own_table {
 
 constexpr std::string_view kColumns = "hip,ra_deg,dec_deg,pm_ra_mas,pm_dec_mas,v,b_v";
 constexpr std::size_t kNumbers = 7;
-constexpr double kFaintest = 7.995;  // the file's last star is at least as faint
+constexpr double kFaintest = 7.995;  // minimum magnitude of the file's last star
 
 std::optional<CatalogueStar> parse(std::string_view row) {
   std::array<double, kNumbers> n;

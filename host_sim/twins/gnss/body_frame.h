@@ -32,7 +32,7 @@ fsw::Vector3 true_boresight(const BodyFrameSettings& settings, const BodyFrameEr
 
 /// Returns the root mean square length over all draws of the relative position error of two spacecraft that each use
 /// the nominal antenna position, m: the static floor under any filter that does not estimate these errors. (Constant in
-/// the body; of a pair that keeps parallel attitudes it is a constant vector, indistinguishable from a baseline.)
+/// the body; for a pair that keeps parallel attitudes it is a constant vector, indistinguishable from a baseline.)
 double static_floor_rms_m(const BodyFrameSettings& servicer, const BodyFrameSettings& target);
 
 /// Returns the static floor of one run's draws for bodies with parallel axes: target's antenna error minus servicer's,

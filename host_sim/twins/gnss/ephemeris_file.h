@@ -13,7 +13,7 @@ namespace vbar::twins::gnss {
 struct EphemerisFile {
   std::vector<Ephemeris> satellites;  ///< for the day of the file
   BroadcastCorrections corrections;   ///< zero if missing in the file
-  std::string note;                   ///< what it holds beside them, with its name; empty: nothing
+  std::string note;                   ///< content of the file beside them, with its name; empty: none
 };
 
 /// Reads the satellites of the systems in `used`; records of others are not looked at. Throws std::runtime_error naming

@@ -15,7 +15,7 @@ struct PlainSurface {
 
 /// Source of the reflectivities of the faces.
 enum class CadMaterials {
-  kFile,     ///< those of the file; refused where they reflect more than they receive
+  kFile,     ///< those of the file; rejected where they reflect more than they receive
   kScaled,   ///< those of the file, both parts divided by their sum where that is more than 1
   kSurface,  ///< the surface, whatever materials the file has
 };
