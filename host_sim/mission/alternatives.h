@@ -7,8 +7,9 @@
 
 namespace vbar::mission {
 
-/// A table in which `key` is about to be stated loses the keys that it takes the place of: of the orbit of a spacecraft
-/// elements, relative and orbit_file (with orbit_object), of a relative orbit waypoint and a_roe_m.
+/// Removes from a table in which `key` is about to be stated the keys that it replaces: elements, relative and
+/// orbit_file (with orbit_object) replace each other in the orbit of a spacecraft, waypoint and a_roe_m in a relative
+/// orbit.
 void drop_alternatives(toml::table& table, std::string_view key);
 
 }  // namespace vbar::mission

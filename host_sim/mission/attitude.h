@@ -37,7 +37,7 @@ struct Commanded {
   double control_error = 0.0;  ///< rad, 1 sigma of each axis over time
 };
 
-/// The pointing profiles need no draws.
+/// Any profile; the pointing profiles need no draws.
 using Attitude = std::variant<Tumble, Inertial, truth::PointedSettings, Commanded>;
 
 /// An element of attitude.then: the profile that replaces the one before.
@@ -47,20 +47,21 @@ struct LaterAttitude {
   std::variant<Inertial, truth::PointedSettings> profile;
 };
 
-/// An attitude drawn for a spacecraft: uniform over all rotations.
+/// Returns an attitude drawn for a spacecraft: uniform over all rotations.
 [[nodiscard]] Eigen::Quaterniond drawn_attitude(std::uint64_t seed, std::string_view spacecraft);
 
-/// A rate in body axes, rad/s: about an axis uniform on the sphere, its size uniform from `slowest` to `fastest`.
+/// Returns a rate in body axes, rad/s: about an axis uniform on the sphere, its size uniform from `slowest` to
+/// `fastest`.
 [[nodiscard]] fsw::Vector3 drawn_rate(std::uint64_t seed, std::string_view spacecraft, double slowest, double fastest);
 
-/// Attitude control error, each body axis independently: five sinusoids with periods of 20 to 600 s and phases drawn
-/// by the seed, of equal amplitude, so that the root mean square over a long time is `sigma` (rad).
+/// Returns the attitude control error, each body axis independently: five sinusoids with periods of 20 to 600 s and
+/// phases drawn by the seed, of equal amplitude, so that the root mean square over a long time is `sigma` (rad).
 [[nodiscard]] truth::ControlError drawn_control_error(std::uint64_t seed, std::string_view spacecraft, double sigma);
 
-/// True minus nominal mass of a spacecraft, kg: normal with `sigma_kg`.
+/// Returns the true minus nominal mass of a spacecraft, kg: normal with `sigma_kg`.
 [[nodiscard]] double drawn_mass_error_kg(std::uint64_t seed, std::string_view spacecraft, double sigma_kg);
 
-/// The attitude at the start of the run, drawn where the file does not specify it.
+/// Returns the attitude at the start of the run, drawn where the file does not specify it.
 [[nodiscard]] truth::AttitudeState start_of(const Tumble& tumble, std::uint64_t seed, std::string_view spacecraft);
 
 }  // namespace vbar::mission

@@ -20,7 +20,7 @@ namespace {
 
 using fsw::Vector3;
 
-constexpr const char* kBodies = "bodies";  // of the data folder
+constexpr const char* kBodies = "bodies";  // name of the folder of bodies in the data folder
 
 constexpr Range kLength_m = from_to(-1000.0, 1000.0);
 
@@ -130,7 +130,7 @@ struct BodyFile {
   std::optional<twins::camera::CadSource> cad;
 };
 
-/// `count`: of the keypoints, if they are required.
+/// `count`: that of the keypoints, if they are required.
 BodyFile load(const std::filesystem::path& file, std::optional<std::size_t> count) {
   const toml::table table = parse_toml(read_data_text(file, "a body file (TOML)"), file.string());
   const TableReader document(table, file.string());

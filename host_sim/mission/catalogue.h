@@ -17,24 +17,26 @@ struct CatalogueEntry {
   bool good = false;
 };
 
-/// Every *.toml file of `folder`, in order of file name. Throws MissionError if there is no such folder.
+/// Returns every *.toml file of `folder`, in order of file name. Throws MissionError if there is no such folder.
 [[nodiscard]] std::vector<std::filesystem::path> mission_files(const std::filesystem::path& folder);
 
-/// A mission file, loaded.
+/// Loads a mission file as an entry of the catalogue.
 [[nodiscard]] CatalogueEntry entry_of(const std::filesystem::path& file, const Installation& installation);
 
-/// The files of a folder, loaded.
+/// Returns the files of a folder, loaded.
 [[nodiscard]] std::vector<CatalogueEntry> list_missions(const std::filesystem::path& folder,
                                                         const Installation& installation);
 
-/// The folder of the mission files: `missions` here, or the one next to the data directory. Throws MissionError.
+/// Returns the folder of the mission files: `missions` here, or the one next to the data directory. Throws
+/// MissionError.
 [[nodiscard]] std::filesystem::path missions_directory();
 
-/// The mission file of a path or a name of the catalogue. Throws MissionError that names the nearest mission.
+/// Returns the mission file of a path or a name of the catalogue. Throws MissionError that names the nearest mission.
 [[nodiscard]] std::filesystem::path find_mission(const std::filesystem::path& path_or_name,
                                                  const Installation& installation);
 
-/// One line of the catalogue, without a line end: name, duration in hours, description; names padded to `name_width`.
+/// Returns one line of the catalogue, without a line end: name, duration in hours, description; names padded to
+/// `name_width`.
 [[nodiscard]] std::string line_of(const CatalogueEntry& entry, std::size_t name_width);
 
 }  // namespace vbar::mission

@@ -9,7 +9,7 @@ namespace vbar::mission {
 
 namespace {
 
-/// Of an installation, beside the folder of the running program.
+/// Returns the data folder of an installation, which lies beside the folder of the running program.
 std::filesystem::path installed_data() {
   std::error_code error;
   const std::filesystem::path program = files::own_program();

@@ -5,8 +5,8 @@
 
 namespace vbar::mission {
 
-/// $VBAR_DATA if set, else the data folder of the source tree this program was built from. Throws std::runtime_error
-/// that names the folder if it does not exist.
+/// Returns $VBAR_DATA if set, else the data folder of the source tree this program was built from. Throws
+/// std::runtime_error that names the folder if it does not exist.
 std::filesystem::path data_directory();
 
 }  // namespace vbar::mission

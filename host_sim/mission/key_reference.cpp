@@ -19,7 +19,7 @@ bool is_number(std::string_view text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-constexpr const char* kMeanings = "mission_keys.toml";  // of the data folder
+constexpr const char* kMeanings = "mission_keys.toml";  // name of the file in the data folder
 
 /// The meaning of a key in the file of meanings, whose tables are those of a mission.
 std::string meaning_of(const toml::table& meanings, const std::string& table, const std::string& key) {
@@ -30,8 +30,8 @@ std::string meaning_of(const toml::table& meanings, const std::string& table, co
 
 using Tables = std::map<std::string, std::vector<AcceptedKey>>;
 
-/// Of two sensors of one kind, whose twin has one name, the first one by name stands for both: another whose keys it
-/// has is taken out.
+/// Removes a sensor that has the same keys as one before it by name: two sensors of one kind, whose twin has one name,
+/// are listed once.
 void list_each_kind_once(Tables& tables) {
   constexpr std::string_view kSensors = "spacecraft.sensors.";
   const auto inside = [&](const std::string& table) {

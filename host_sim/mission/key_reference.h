@@ -17,12 +17,13 @@ struct DescribedKey {
   std::string meaning;  ///< in data/mission_keys.toml; empty: it has none there
 };
 
-/// Of all missions in `folder`, in order of tables, keys in the order of reading. A key is listed if a mission's reader
-/// asks for it. Throws MissionError if a mission, or the file of meanings, is invalid.
+/// Returns the keys of all missions in `folder`, in the order of tables, and within a table in the order of reading. A
+/// key is listed if a mission's reader asks for it. Throws MissionError if a mission, or the file of meanings, is
+/// invalid.
 [[nodiscard]] std::vector<DescribedKey> key_reference(const std::filesystem::path& folder,
                                                       const Installation& installation);
 
-/// The path of a reader's table without names and numbers of elements: "spacecraft.servicer.sensors.camera" and
+/// Returns the path of a reader's table without names and numbers of elements: "spacecraft.servicer.sensors.camera" and
 /// "waypoint.3" are "spacecraft.sensors.camera" and "waypoint".
 [[nodiscard]] std::string table_of_path(const std::string& path);
 

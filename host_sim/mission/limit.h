@@ -9,14 +9,15 @@
 
 namespace vbar::mission {
 
-/// Of the number with a dotted key, e.g. waypoints.10.navigation_error_m; at least one of both is stated.
+/// Limits the number with a dotted key of the summary, e.g. waypoints.10.navigation_error_m. At least one of both
+/// bounds is stated.
 struct Limit {
   std::string key;
   std::optional<double> most, least;
 };
 
-/// Those of a mission file with what it extends, and of the overrides, "path=value"; nothing else of it is read or
-/// checked. Throws MissionError.
+/// Returns the limits of a mission file, of the files that it extends, and of the overrides, "path=value". Nothing else
+/// of the mission is read or checked. Throws MissionError.
 [[nodiscard]] std::vector<Limit> load_limits(const std::filesystem::path& file, std::span<const std::string> overrides);
 
 }  // namespace vbar::mission

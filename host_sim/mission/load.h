@@ -14,18 +14,18 @@
 
 namespace vbar::mission {
 
-/// Reads `file`, applies the overrides ("path=value", overrides.h) to it in order, checks all. Throws
+/// Reads `file`, applies the overrides ("path=value", mission_document.h) to it in order, checks all. Throws
 /// MissionError.
 Mission load_mission(const std::filesystem::path& file, std::span<const std::string> overrides,
                      const Installation& installation);
 
-/// As load_mission, for a text already in memory; `file` is its name in messages and the base of relative paths
-/// in it.
+/// Loads a mission as load_mission() does, from a text already in memory. `file` is its name in messages and the base
+/// of relative paths in it.
 Mission parse_mission(std::string_view text, const std::filesystem::path& file, std::span<const std::string> overrides,
                       const Installation& installation);
 
-/// The keys that the tables of a mission accept, by the dotted path of the table: those that were read when it was
-/// loaded. Throws MissionError for a mission that does not load.
+/// Returns the keys that the tables of a mission accept, by the dotted path of the table: those that were read when it
+/// was loaded. Throws MissionError for a mission that does not load.
 std::map<std::string, std::vector<AcceptedKey>> accepted_keys(const std::filesystem::path& file,
                                                               std::span<const std::string> overrides,
                                                               const Installation& installation);

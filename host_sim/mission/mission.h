@@ -29,7 +29,7 @@ namespace vbar::mission {
 
 inline constexpr std::string_view kTruthModel = "model";  ///< source of the truth: vbar's truth model
 
-inline constexpr std::size_t kMaxWaypoints = 16;  ///< of one waypoint telecommand
+inline constexpr std::size_t kMaxWaypoints = 16;  ///< capacity of one waypoint telecommand
 
 /// Orbit of a spacecraft at the epoch.
 enum class ElementsKind { kOsculating, kMean };
@@ -53,7 +53,7 @@ struct OrbitByRoe {
 /// Orbit given by the file of another program, at the epoch.
 struct OrbitByFile {
   std::filesystem::path file;
-  std::string object;  ///< of the file; empty: its only one
+  std::string object;  ///< name of the object in the file; empty: the file's only object
 };
 
 using truth::SurfaceProperties;
@@ -73,11 +73,11 @@ struct FlightComputer {
   std::optional<int> baud;
   std::string address;  ///< board on UDP
   int port = 0;         ///< board on UDP
-  /// Of a step, beyond which the run fails: instructions on zynq_qemu, processor cycles on a board.
+  /// Largest cost of a step, beyond which the run fails: instructions on zynq_qemu, processor cycles on a board.
   std::int64_t step_budget = 0;
 };
 
-/// What a kind of sensor has read from the table of one sensor: each kind derives its own settings.
+/// Settings that a kind of sensor has read from the table of one sensor: each kind derives its own settings.
 struct SensorSettings {
   SensorSettings() = default;
   SensorSettings(const SensorSettings&) = default;
@@ -87,11 +87,11 @@ struct SensorSettings {
   std::string source;         ///< provider of its data: "digital", "recorded" or the name of a testbed
   std::filesystem::path log;  ///< of source "recorded": the packet log
   std::string observed;       ///< the other spacecraft that it measures or exchanges data with; empty: none
-  /// What navigation uses it for: a sum of navigation_configuration::kUse (vbar.lcm); 0: nothing.
+  /// Uses by navigation: a sum of navigation_configuration::kUse (vbar.lcm); 0: nothing.
   std::int32_t navigation = 0;
 };
 
-/// What a kind of sensor has read from tables of the document, for all of its sensors.
+/// Settings that a kind of sensor has read from tables of the document, for all of its sensors.
 struct SharedSettings {
   SharedSettings() = default;
   SharedSettings(const SharedSettings&) = default;
@@ -128,8 +128,8 @@ enum class FaultKind {
   kSilent,             ///< a sensor gives nothing
   kFrozen,             ///< a camera gives its last image again
   kReceiverSilent,     ///< a receiver gives no bytes; attitudes of the same sensor continue
-  kTargetTurned,       ///< a camera sees the target turned by `value`, rad, about its body's x axis
-  kAttitudeError,      ///< attitudes of a sensor are turned by `value`, rad
+  kTargetTurned,       ///< a camera sees the target rotated by `value`, rad, about its body's x axis
+  kAttitudeError,      ///< attitudes of a sensor are rotated by `value`, rad
   kThrustScale,        ///< burns are executed at `value` of their size; 0: not at all
   kThrustUncommanded,  ///< an acceleration of `value` m/s^2 along `direction_rtn`
   kComputerSilent,     ///< the flight computer gets no packets and takes no steps, then continues
@@ -160,7 +160,7 @@ struct Fault {
   std::string observed;    ///< kTargetTurned: the spacecraft in its images
   std::string satellite;   ///< kCycleSlip: "G05", "highest" or "all"
   std::string start;       ///< as in the file: "waypoint:9"; empty: a time
-  /// Empty if `begin` is known: before the run, or since the event has happened.
+  /// Event that begins the fault; empty if `begin` is known: before the run, or since the event has happened.
   std::optional<FaultEvent> awaited;
   fsw::GpsTime begin;                     ///< kNever while an event is awaited
   std::optional<fsw::Duration> duration;  ///< empty: to the end
@@ -172,7 +172,7 @@ struct Fault {
   static constexpr fsw::GpsTime kNever{std::numeric_limits<std::int64_t>::max()};
 
   [[nodiscard]] bool has_begun(fsw::GpsTime time) const { return time >= begin && begin != kNever; }
-  /// False for a fault of an instant, which has a duration of 0.
+  /// Whether the fault is present. False for a fault of an instant, which has a duration of 0.
   [[nodiscard]] bool is_present(fsw::GpsTime time) const {
     return has_begun(time) && (!duration || time < begin + *duration);
   }
@@ -190,7 +190,7 @@ struct Spacecraft {
   std::uint8_t number = 0;     ///< as in packet headers
   std::string body;            ///< names its file in data/bodies; may be empty
   SurfaceProperties surface;   ///< nominal
-  double mass_sigma_kg = 0.0;  ///< of its true mass
+  double mass_sigma_kg = 0.0;  ///< 1 sigma of its true mass
   std::string model;           ///< CAD file for cameras, data/models/<model>.obj; empty: invisible to cameras
   std::variant<OrbitByElements, OrbitByWaypoint, OrbitByRoe, OrbitByFile> orbit;
   std::optional<Attitude> attitude;
@@ -199,11 +199,11 @@ struct Spacecraft {
   std::vector<Sensor> sensors;  ///< kinds in the order of the program's list, the sensors of a kind by name
   std::optional<Thruster> thruster;
 
-  /// The spacecraft that its sensors navigate to; empty if it has none.
+  /// Returns the spacecraft that its sensors navigate to; empty if it has none.
   [[nodiscard]] const std::string& observes() const;
 };
 
-/// Settings of the first sensor of a kind, by the type of its settings; null if there is none.
+/// Returns the settings of the first sensor of a kind, by the type of its settings; null if there is none.
 template <class Settings>
 [[nodiscard]] const Settings* find_settings(const Spacecraft& spacecraft) {
   for (const Sensor& sensor : spacecraft.sensors)
@@ -220,10 +220,10 @@ struct Waypoint {
   fsw::Vector6 a_roe_m =
       fsw::Vector6::Zero();  ///< mean ROE of the target with respect to the servicer, times the reference a
   Solver solver{waypoint::kSolverClosedForm};
-  std::optional<double> keep_out_radius_m;  ///< of the leg that ends here; default: that of guidance
+  std::optional<double> keep_out_radius_m;  ///< radius for the leg that ends here; default: that of guidance
 };
 
-/// Numbers as in vbar.lcm, mode_command.
+/// Mode of guidance; numbers as in vbar.lcm, mode_command.
 enum class Mode : std::int8_t { kIdle = 0, kApproach = 1, kStationKeeping = 2, kHold = 3, kRetreat = 4 };
 
 /// Telecommands to the flight software at the start.
@@ -233,7 +233,7 @@ struct Guidance {
   vbar::gnc_configuration configuration{};
 };
 
-/// What is known of the target's orbit at the start.
+/// Knowledge of the target's orbit at the start.
 enum class Apriori : std::int8_t { kNone = 0, kOrbit = 1, kRoe = 2 };
 
 /// [navigation]: telecommands to navigation that do not depend on its sensors.
@@ -243,7 +243,7 @@ struct Navigation {
   Apriori apriori = Apriori::kNone;
   /// Mean ROE times the reference semi-major axis, 1 sigma.
   fsw::Vector6 apriori_sigma_a_roe_m = fsw::Vector6::Zero();
-  double angular_acceleration_psd = 0.0;  ///< of the target, rad^2/s^3, each axis
+  double angular_acceleration_psd = 0.0;  ///< psd of the target's angular acceleration, rad^2/s^3, each axis
 };
 
 /// Live packets on an LCM bus.
@@ -258,7 +258,7 @@ enum class ImagesInLog {
   kTiles,    ///< their packets
 };
 
-/// What a run leaves besides its summary with the hashes of its outputs.
+/// Outputs of a run besides its summary with the hashes of its outputs.
 struct Record {
   ImagesInLog images = ImagesInLog::kRecipes;
   bool packets = true;  ///< the log of all packets
@@ -271,21 +271,21 @@ struct Mission {
   std::filesystem::path file;
   std::string name;
   std::string description;
-  fsw::GpsTime epoch;      ///< of the orbital elements and of waypoint times
+  fsw::GpsTime epoch;      ///< reference of orbital elements and waypoint times
   fsw::Duration start;     ///< first step, after the epoch
   fsw::Duration duration;  ///< from the first step to the end of the run
   engine::Cadence step{fsw::GpsTime{},
-                       fsw::duration_of_seconds(60)};  ///< of the flight software, the first at the start
+                       fsw::duration_of_seconds(60)};  ///< steps of the flight software, the first at the start
   std::uint64_t seed = 1;
   truth::TruthSettings truth;             ///< all but the data folder, which the program determines
   std::string truth_source{kTruthModel};  ///< or the name of a testbed; the model then gives the states at the start
   std::vector<Spacecraft> spacecraft;
   Guidance guidance;
-  std::optional<vbar::safety_configuration> safety;  ///< without it neither retreat nor guard
+  std::optional<vbar::safety_configuration> safety;  ///< without it neither retreat nor safety monitor
   Navigation navigation;
   std::vector<std::shared_ptr<const SharedSettings>> shared;  ///< one of each kind of sensor
   std::vector<Testbed> testbeds;
-  std::vector<PrescribedBurn> burns;  ///< of the spacecraft that flies, in order of time
+  std::vector<PrescribedBurn> burns;  ///< burns of the servicer, in order of time
   std::vector<Fault> faults;          ///< in the order of the file
   std::vector<Waypoint> waypoints;    ///< in order of time
   engine::ClockSettings clock;
@@ -294,22 +294,22 @@ struct Mission {
       board_link;  ///< the simulated link between a spacecraft's sensors or actuators and its flight computer
   LcmMirror lcm;
   Record record;
-  std::vector<Limit> limits;          ///< of vbar check, in the order of the file
+  std::vector<Limit> limits;          ///< limits that vbar check applies, in the order of the file
   std::vector<NamedFile> data_files;  ///< that the mission names
 
   [[nodiscard]] fsw::GpsTime start_time() const { return epoch + start; }
   [[nodiscard]] fsw::GpsTime end_time() const { return epoch + start + duration; }
 
-  /// Whether any spacecraft carries flight software.
+  /// Returns whether any spacecraft carries flight software.
   [[nodiscard]] bool flies() const;
 
-  /// Null for an unknown name or index.
+  /// Returns the element with a name or index; null for an unknown one.
   [[nodiscard]] const Spacecraft* find_spacecraft(std::string_view spacecraft_name) const;
   [[nodiscard]] const Waypoint* find_waypoint(int index) const;
 };
 
-/// What a kind of sensor has read for all of its sensors, by the type of those settings. Throws std::logic_error if the
-/// mission was loaded without that kind.
+/// Returns the settings that a kind of sensor has read for all its sensors, by the type of those settings. Throws
+/// std::logic_error if the mission was loaded without that kind.
 template <class Settings>
 [[nodiscard]] const Settings& shared_settings(const Mission& mission) {
   for (const auto& shared : mission.shared)
@@ -317,7 +317,7 @@ template <class Settings>
   throw std::logic_error("the mission was loaded without a kind of sensor that is asked for");
 }
 
-/// The names that mission files and summaries use (names.h has them all).
+/// Returns the names that mission files and summaries use (the constants below list all).
 [[nodiscard]] std::string_view name_of(FaultKind kind);
 [[nodiscard]] std::string_view name_of(FlightTarget target);
 [[nodiscard]] std::string_view name_of(FlightLink link);

@@ -66,7 +66,7 @@ inline constexpr Names<truth::Shadow, 3> kShadows{{{"none", truth::Shadow::kNone
                                                    {"cylindrical", truth::Shadow::kCylindrical},
                                                    {"conical", truth::Shadow::kConical}}};
 
-/// The name of an enumerator; empty for an invalid value.
+/// Returns the name of an enumerator; empty for an invalid value.
 template <class Enum, std::size_t N>
 constexpr std::string_view name_in(const Names<Enum, N>& names, Enum value) {
   for (const auto& [name, candidate] : names)

@@ -44,7 +44,7 @@ constexpr Names<TorqueKind, 3> kTorques{{{"gravity_gradient", TorqueKind::kGravi
                                          {"aerodynamic", TorqueKind::kAerodynamic},
                                          {"radiation", TorqueKind::kRadiation}}};
 
-// Ten revolutions per second: integrating hours of it takes minutes.
+// Largest rate is ten revolutions per second: integrating hours of such a motion takes minutes.
 constexpr double kFastest_degps = 3600.0;
 // The tumble rates of the experiments with a non-cooperative target.
 constexpr double kDefaultRateMin_degps = 0.3;

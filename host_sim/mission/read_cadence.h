@@ -9,8 +9,8 @@
 
 namespace vbar::mission {
 
-/// The mission's epoch and start must be known. A single period, also the default, holds from the start; of a list,
-/// what lies before the start is left out.
+/// Reads a period. The mission's epoch and start must be known. A single period, also the default, holds from the
+/// start; elements of a list before the start are left out.
 [[nodiscard]] engine::Cadence read_cadence(const TableReader& section, std::string_view key, Range period_s,
                                            const Mission& mission, const engine::Cadence& default_value);
 [[nodiscard]] engine::Cadence read_cadence(const TableReader& section, std::string_view key, Range period_s,

@@ -11,7 +11,8 @@ namespace vbar::mission {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
-/// Above the second differences of pseudoranges in orbit, by which its witness sees it.
+/// Smallest jump lies above the second differences of pseudoranges in orbit, by which the observer of the fault detects
+/// it.
 constexpr double kShortestClockJump_s = 1e-6;
 
 const Spacecraft& flying(const TableReader& section, const Mission& mission) {

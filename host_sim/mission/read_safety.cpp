@@ -2,8 +2,9 @@
 
 namespace vbar::mission {
 
-// The table itself selects retreat and guard; every key has a default, those of the mission of the paper: Tango's
-// sphere of 0.73 m and one of 1.3 m around Mango with its panels, errors of a retreat at 7 m, a hold orbit at 200 m.
+// Presence of the table selects retreat and safety monitor. Every key has a default, that of the paper's mission:
+// Tango's sphere of 0.73 m and one of 1.3 m around Mango with its panels, errors of a retreat at 7 m, a hold orbit at
+// 200 m.
 void read_safety(const TableReader& document, Mission& mission) {
   if (!document.has("safety")) return;
   const TableReader section = document.table("safety");

@@ -30,15 +30,15 @@ void read_lcm(const TableReader& document, Mission& mission);                   
 void read_record(const TableReader& document, Mission& mission);                                   // [record]
 void read_limits(const TableReader& document, Mission& mission);                                   // [[limit]]
 
-/// A table of [[limit]] of a mission, or of [[pass]] of a campaign.
+/// Reads a table of [[limit]] of a mission, or of [[pass]] of a campaign.
 Limit read_limit(const TableReader& section);
 
-/// [spacecraft.sensors.*]: kinds in the order of the installation, the sensors of a kind in alphabetical order.
+/// Reads [spacecraft.sensors.*]: kinds in the order of the installation, the sensors of a kind in alphabetical order.
 std::vector<Sensor> read_sensors(const TableReader& sensors, const SensorContext& context);
 void check_sensors(const TableReader& sensors, const Spacecraft& spacecraft, const Mission& mission,
                    const Installation& installation);
 
-/// `distribution` and its parameters.
+/// Reads `distribution` and its parameters.
 engine::LatencyDistribution read_latency(const TableReader& section);
 
 }  // namespace vbar::mission

@@ -117,9 +117,9 @@ Orbit read_orbit(const TableReader& section, const Member& member, const Mission
   return read_relative(section.table("relative"), mission);
 }
 
-// Of a step, unless the mission states another: the largest of the missions of this repository (206 million
-// instructions, docs/board_bringup.md) and a fifth; at 4 cycles an instruction and 667 MHz these are 1.5 s. The least
-// is more than a board needs to start the flight software.
+// Default of the budget of a step is the largest one of the missions of this repository (206 million instructions,
+// docs/board_bringup.md) and a fifth; at 4 cycles an instruction and 667 MHz these are 1.5 s. The minimum is more than
+// a board needs to start the flight software.
 constexpr std::int64_t kStepBudgetInstructions = 270'000'000;
 constexpr std::int64_t kStepBudgetCycles = 4 * kStepBudgetInstructions;
 constexpr std::int64_t kMinStepBudget = 100'000;

@@ -23,13 +23,13 @@ struct SensorContext {
   const Mission& mission;  ///< without the spacecraft further down
   const Installation& installation;
   const std::string& spacecraft;                     ///< that carries the sensor
-  const std::vector<std::string>& spacecraft_names;  ///< of all spacecraft
+  const std::vector<std::string>& spacecraft_names;  ///< names of all spacecraft
 };
 
-/// All functions throw MissionError.
+/// Reader of a kind of sensor; all functions throw MissionError.
 struct SensorReader {
   std::string_view name;   ///< the value of `kind`
-  std::string_view table;  ///< of the document, that only this kind reads; empty: none
+  std::string_view table;  ///< table of the document that only this kind reads; empty: none
   /// Reads the table of one sensor, with the ranges and defaults of its keys.
   std::shared_ptr<const SensorSettings> (*read)(const TableReader& section, const SensorContext& context);
   /// Reads the tables of the document that belong to the kind. Null if it has none.
@@ -52,15 +52,15 @@ struct Installation {
   std::filesystem::path data_directory;
   std::vector<const SensorReader*> kinds;
   std::vector<const TestbedReader*> testbeds;
-  std::vector<const engine::WallClockSource*> clocks;  ///< of which the first is the default
+  std::vector<const engine::WallClockSource*> clocks;  ///< the first one is the default
 };
 
-/// The clock that the mission names, which the loader has checked.
+/// Makes the clock that the mission names, which the loader has checked.
 [[nodiscard]] std::unique_ptr<engine::WallClock> make_wall_clock(const Mission& mission,
                                                                  const Installation& installation);
 
-/// `source` and, for "recorded", `log`: `twin` is the name of the source that this program simulates, the default.
-/// Testbeds of the mission are accepted too.
+/// Reads `source` and, for "recorded", `log`: `twin` is the name of the source that this program simulates, the
+/// default. Testbeds of the mission are accepted too.
 void read_source(const TableReader& section, std::string_view twin, const SensorContext& context,
                  SensorSettings& settings);
 

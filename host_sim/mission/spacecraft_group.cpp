@@ -7,7 +7,7 @@
 namespace vbar::mission {
 namespace {
 
-constexpr int kMaxSpacecraft = 255;  // of their numbers in packet headers
+constexpr int kMaxSpacecraft = 255;  // range of the numbers in packet headers
 constexpr double kTurn_deg = 360.0;
 
 }  // namespace

@@ -25,14 +25,16 @@ class SpacecraftGroup {
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] int count() const { return count_; }
 
-  /// `<name>_<member>`, counted from 1 with as many digits as the last has; the name alone without a `count`.
+  /// Returns the name of a member: `<name>_<member>`, counted from 1 with as many digits as the last has; the name
+  /// alone without a `count`.
   [[nodiscard]] std::string member_name(int member) const;
 
-  /// As section.number(), plus `member` (0, 1, ...) times the spacing of that key. The sum must lie in the range too.
+  /// Reads a number as section.number() does, plus `member` (0, 1, ...) times the spacing of that key. The sum must lie
+  /// in the range too.
   [[nodiscard]] double number(const TableReader& section, int member, std::string_view key, Range range,
                               std::optional<double> default_value = std::nullopt) const;
 
-  /// The same for an angle in degrees: the sum is wrapped to -180 ... 180.
+  /// Returns an angle in degrees as number() does; the sum is wrapped to -180 ... 180.
   [[nodiscard]] double angle_deg(const TableReader& section, int member, std::string_view key) const;
 
  private:

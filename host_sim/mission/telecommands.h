@@ -7,8 +7,8 @@
 
 namespace vbar::mission {
 
-/// All waypoints of the mission, including those that have passed at the start, which the flight software skips.
-/// A mission has at most kMaxWaypoints of them (checked by the loader).
+/// Returns all waypoints of the mission, including those that have passed at the start, which the flight software
+/// skips. A mission has at most kMaxWaypoints of them (checked by the loader).
 [[nodiscard]] vbar::waypoint_table waypoint_table_of(const Mission& mission);
 
 [[nodiscard]] vbar::mode_command mode_command_of(const Mission& mission);

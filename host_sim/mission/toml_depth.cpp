@@ -62,7 +62,7 @@ class DepthScan {
     header_ = 0;
     names_ = 1;
     in_header_ = true;
-    if (at_ + 1 < text_.size() && text_[at_ + 1] == '[') ++at_;  // of an array of tables
+    if (at_ + 1 < text_.size() && text_[at_ + 1] == '[') ++at_;  // header of an array of tables
   }
 
   void open() {
@@ -84,7 +84,7 @@ class DepthScan {
     names_ = 1;
   }
 
-  /// Whether three quotes stand here.
+  /// Whether three quotes begin here.
   [[nodiscard]] bool has_three(char quote) const {
     const std::string_view three = text_.substr(at_, 3);
     return three.size() == 3 && three.find_first_not_of(quote) == std::string_view::npos;
@@ -96,7 +96,7 @@ class DepthScan {
     for (; at_ < text_.size(); ++at_) {
       const char c = text_[at_];
       if (c == '\n') {
-        if (!is_long) return;  // not closed: the parser refuses it
+        if (!is_long) return;  // not closed: the parser rejects it
         ++line_;
       }
       if (c == '\\' && quote == '"') {
@@ -112,7 +112,7 @@ class DepthScan {
   std::string_view text_;
   std::size_t at_ = 0, line_ = 1;
   std::size_t header_ = 0;         ///< depth of the table that the last header names
-  std::size_t names_ = 1;          ///< of the present dotted key; dots of numbers count as well
+  std::size_t names_ = 1;          ///< number of names of the present dotted key; dots of numbers count as well
   std::vector<std::size_t> open_;  ///< depth within each open bracket
   bool is_line_start_ = true, in_header_ = false;
 };

@@ -11,8 +11,8 @@ namespace vbar::mission {
 /// Deepest nesting that is accepted; that of mission files is below ten.
 inline constexpr std::size_t kTomlDepthMax = 100;
 
-/// The line, counted from 1, where `text` nests deeper than kTomlDepthMax by dotted keys, table headers, inline tables
-/// and arrays together; nothing if it does not. Of text that is not TOML the result has no meaning.
+/// Returns the line, counted from 1, where `text` nests deeper than kTomlDepthMax by dotted keys, table headers, inline
+/// tables and arrays together; nothing if no line does. The result for a text that is not TOML has no meaning.
 [[nodiscard]] std::optional<std::size_t> line_too_deep(std::string_view text);
 
 }  // namespace vbar::mission

@@ -9,13 +9,13 @@
 
 namespace vbar::mission {
 
-/// `file`: its name, for messages.
+/// Parses a TOML document. `file`: its name, for messages.
 [[nodiscard]] toml::table parse_toml(std::string_view text, const std::string& file);
 
-/// The text of a file; `kind` is the expected kind: "a mission file (TOML)".
+/// Returns the text of a file; `kind` is the expected kind: "a mission file (TOML)".
 [[nodiscard]] std::string read_text_file(const std::filesystem::path& file, const std::string& kind);
 
-/// The same of a data file, which becomes part of the run's provenance (host_sim/files/data_stream.h).
+/// Returns the text of a data file, which becomes part of the run's provenance (host_sim/files/data_stream.h).
 [[nodiscard]] std::string read_data_text(const std::filesystem::path& file, const std::string& kind);
 
 }  // namespace vbar::mission

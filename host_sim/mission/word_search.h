@@ -7,19 +7,20 @@
 
 namespace vbar::mission {
 
-/// How well a text answers a search, in ascending order.
+/// Quality of the match of a text with a search, in ascending order.
 enum class Match {
   kNone,
   kWordStart,  ///< a word of the text begins with it: "hold" and "holdover"
   kWord,       ///< a whole word: "hold" and "guidance.hold_distance_m"
 };
 
-/// Letters and digits form words, case does not count: "hold" is in "hold_distance_m" but not in "threshold". A search
-/// of several words ("keep_out", "of the target") is found where they stand in that order. An empty one matches all.
+/// Matches `searched` against a text. Letters and digits form words, and case does not count: "hold" is in
+/// "hold_distance_m" but not in "threshold". A search of several words ("keep_out", "of the target") matches where they
+/// follow each other in that order. An empty search matches all.
 [[nodiscard]] Match match_of(std::string_view searched, std::string_view text);
 
-/// " (did you mean WORD?)" for a search without a result, of the names searched, their parts between dots and spaces,
-/// and the words of these; empty without a near one.
+/// Returns " (did you mean WORD?)" for a search without a result, of the names searched, their parts between dots and
+/// spaces, and the words of these; empty without a near one.
 [[nodiscard]] std::string word_meant(std::string_view searched, const std::vector<std::string>& names);
 
 }  // namespace vbar::mission

@@ -123,14 +123,14 @@ States without_gap(const Track& track, std::size_t place) {
   return States(track.states).subspan(begin, end - begin);
 }
 
-/// |w| of the nodes (interpolation.h), as a logarithm: far nodes overflow nothing.
+/// |w| of the nodes (orbit_file.h), as a logarithm: far nodes overflow nothing.
 double log_node_product(States nodes, fsw::GpsTime time, Polynomial polynomial) {
   double sum = 0.0;
   for (const TimedState& node : nodes) sum += std::log(std::abs(fsw::seconds(node.time - time)));
   return polynomial == Polynomial::kHermite ? 2.0 * sum : sum;
 }
 
-/// Of the positions and the velocities of states left out and found again.
+/// Largest errors of the positions and the velocities of states left out and found again.
 struct Bound {
   double position_m = 0.0, velocity_mps = 0.0;
 };
@@ -160,7 +160,7 @@ Bound leave_one_out(States states, States nodes, fsw::GpsTime time, const Interp
   return bound;
 }
 
-/// Of a circular orbit at the lower one of two states.
+/// Quarter of the period of a circular orbit at the lower one of two states.
 double quarter_revolution_s(const TimedState& before, const TimedState& behind) {
   const double radius_m = std::min(before.state.position_eci.norm(), behind.state.position_eci.norm());
   return 0.5 * std::numbers::pi * std::sqrt(radius_m * radius_m * radius_m / fsw::orbit::kMu);

@@ -23,11 +23,11 @@ namespace vbar::orbit_files {
 /// accuracy of the orbits that operators publish, and far below what a wrong file shows (kilometres).
 inline constexpr double kMaxInterpolationErrorM = 10.0;
 
-/// The state at a time between the first and the last of the track. Throws std::out_of_range that names `file`, time
-/// and reason.
+/// Returns the state at a time between the first and the last of the track. Throws std::out_of_range that names `file`,
+/// time and reason.
 [[nodiscard]] FramedState interpolated(const Track& track, fsw::GpsTime time, const std::string& file);
 
-/// "Hermite polynomial of degree 7".
+/// Returns the name of a rule: "Hermite polynomial of degree 7".
 [[nodiscard]] std::string name_of(const InterpolationRule& rule);
 
 }  // namespace vbar::orbit_files

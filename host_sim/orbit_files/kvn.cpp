@@ -20,8 +20,8 @@ Eigen::Matrix3d R_gcrf_eme2000() {
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(&bias[0][0]).transpose();
 }
 
-/// ITRF alone, or a realisation of it: ITRF2014, ITRF-97, ITRF97. They differ by centimetres, 1988 from 2020 by a
-/// decimetre.
+/// Whether the frame is ITRF or one of its realisations: ITRF2014, ITRF-97, ITRF97. They differ by centimetres, 1988
+/// from 2020 by a decimetre.
 bool is_itrf(std::string_view frame) {
   constexpr std::array<std::string_view, 14> kYears{"88", "89", "90", "91",   "92",   "93",   "94",
                                                     "96", "97", "00", "2000", "2005", "2008", "2014"};

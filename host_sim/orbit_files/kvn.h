@@ -18,16 +18,16 @@ struct Keyword {
   std::string_view unit;  ///< between brackets behind the value; may be empty
 };
 
-/// "NAME = value [unit]"; nothing for another line.
+/// Returns the keyword of a line "NAME = value [unit]"; nothing for another line.
 [[nodiscard]] std::optional<Keyword> keyword_in(std::string_view line);
 
-/// COMMENT or blank.
+/// Whether the line is a COMMENT or blank.
 [[nodiscard]] bool is_comment(const files::TextLines& lines);
 
-/// First line of a message of this kind ("CCSDS_OEM_VERS"), comments aside.
+/// Whether the first line, comments aside, is that of a message of this kind ("CCSDS_OEM_VERS").
 [[nodiscard]] bool begins_with(std::string_view text, std::string_view version_keyword);
 
-/// Names of the keywords of which a block holds one each.
+/// Holds the names of the keywords of which a block holds one each.
 class UniqueKeywords {
  public:
   /// Throws files::FormatError at the current line for a second one of the name.
@@ -46,7 +46,7 @@ struct MessageFrame {
   Eigen::Matrix3d R_frame_message = Eigen::Matrix3d::Identity();
 };
 
-/// What the metadata of both say.
+/// Metadata that both messages have.
 struct Metadata {
   std::string object, object_id;
   std::optional<TimeSystem> time_system;
@@ -62,8 +62,8 @@ struct Metadata {
 
   [[nodiscard]] fsw::GpsTime time(const files::TextLines& lines, std::string_view text) const;
 
-  /// From km and km/s along the axes of the message, along those of its frame. Refuses what is not an orbit about the
-  /// Earth in these units.
+  /// Converts a state from km and km/s along the axes of the message to m and m/s along those of its frame. Rejects
+  /// what is not an orbit about the Earth in these units.
   [[nodiscard]] fsw::orbit::CartesianState state(const files::TextLines& lines, const fsw::Vector3& position_km,
                                                  const fsw::Vector3& velocity_kmps) const;
 

@@ -16,7 +16,8 @@ bool is_same_word(std::string_view a, std::string_view b) {
   return std::ranges::equal(a, b, {}, [](unsigned char c) { return std::toupper(c); });
 }
 
-/// Metadata of a segment: what it shares with an OPM, its times and how its states are to be interpolated.
+/// Metadata of a segment hold the fields that OPM has too, the segment's times, and the rule for interpolating its
+/// states.
 struct SegmentMetadata {
   Metadata common;
   std::string_view start, stop, useable_start, useable_stop, interpolation;

@@ -1,6 +1,6 @@
 #pragma once
 // Orbits from files in published formats: each format is recognised by its contents, whatever the name of the file;
-// each has its file here and its line in the list.
+// each has its functions here and its line in the list.
 
 #include <filesystem>
 #include <optional>
@@ -18,7 +18,7 @@ enum class Frame { kGcrf, kItrf };
 
 struct TimedState {
   fsw::GpsTime time;
-  fsw::orbit::CartesianState state;  ///< in the frame of the track; of an Earth-fixed one relative to that frame
+  fsw::orbit::CartesianState state;  ///< in the frame of the track; relative to that frame if it is Earth-fixed
 };
 
 enum class Polynomial {
@@ -69,34 +69,34 @@ struct OrbitFormat {
 [[nodiscard]] std::vector<Track> read_oem(std::string_view text, const std::string& file);
 
 // CCSDS Orbit Parameter Message (502.0-B-3, section 3) in KVN, the same versions, frames and time systems: its state
-// vector. A message with maneuvers is refused; osculating elements, spacecraft parameters and covariance are skipped.
+// vector. A message with maneuvers is rejected; osculating elements, spacecraft parameters and covariance are skipped.
 [[nodiscard]] bool is_opm(std::string_view text);
 [[nodiscard]] std::vector<Track> read_opm(std::string_view text, const std::string& file);
 
 // SP3-a to SP3-d (Hilla 2016), Earth-fixed, with or without velocities. Positions and velocities of 0 are missing ones;
-// of a satellite that lacks a velocity the positions alone are used.
+// the positions alone are used of a satellite that lacks a velocity.
 [[nodiscard]] bool is_sp3(std::string_view text);
 [[nodiscard]] std::vector<Track> read_sp3(std::string_view text, const std::string& file);
 
 [[nodiscard]] std::span<const OrbitFormat> orbit_formats();
 
-/// The tracks of a text in any of the formats, which may begin with a byte order mark. Throws files::FormatError; for
-/// an unknown format it names all.
+/// Returns the tracks of a text in any of the formats, which may begin with a byte order mark. Throws
+/// files::FormatError; for an unknown format it names all.
 [[nodiscard]] OrbitFile read_orbits(std::string_view text, const std::string& file);
 
-/// The same of a file, which becomes part of the run's provenance. Throws std::runtime_error.
+/// Reads the tracks of a file, which becomes part of the run's provenance. Throws std::runtime_error.
 [[nodiscard]] OrbitFile load_orbits(const std::filesystem::path& file);
 
-/// The tracks of one object: that named `object`, or, if `object` is empty, the only one of the file. Throws
+/// Returns the tracks of one object: that named `object`, or, if `object` is empty, the only one of the file. Throws
 /// std::runtime_error that names the objects of the file.
 [[nodiscard]] OrbitFile tracks_of(const OrbitFile& file, std::string_view object);
 
-/// How a state between those of a file was found, and how far it may be off.
+/// Rule by which a state between those of a file was found, and bounds of its error.
 struct InterpolationCheck {
   InterpolationRule rule;
   double step_s = 0.0;              ///< between the states on either side
-  double bound_m = 0.0;             ///< of the position's error (interpolation.h)
-  std::optional<double> bound_mps;  ///< of the velocity's; none without velocities in the file
+  double bound_m = 0.0;             ///< bound of the position's error (error bound of the interpolation)
+  std::optional<double> bound_mps;  ///< bound of the velocity's error; none without velocities in the file
 };
 
 /// A state and the frame it is in.
@@ -106,10 +106,10 @@ struct FramedState {
   std::optional<InterpolationCheck> interpolation;  ///< none for a state of the file itself
 };
 
-/// State at `time` of a file of one object, interpolated by the rule that the file publishes, else with velocities by
-/// the Hermite polynomial through four states, without them by that of degree 9 through ten positions. Throws
-/// std::out_of_range that names file, time and reason: outside the states or the useable time, in a gap, or an error
-/// that may exceed kMaxInterpolationErrorM.
+/// Returns the state at `time` of a file of one object, interpolated by the rule that the file publishes, else with
+/// velocities by the Hermite polynomial through four states, without them by that of degree 9 through ten positions.
+/// Throws std::out_of_range that names file, time and reason: outside the states or the useable time, in a gap, or an
+/// error that may exceed kMaxInterpolationErrorM.
 [[nodiscard]] FramedState state_at(const OrbitFile& file, fsw::GpsTime time);
 
 }  // namespace vbar::orbit_files

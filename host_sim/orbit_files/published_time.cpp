@@ -66,7 +66,7 @@ std::optional<TimeSystem> time_system_named(std::string_view name) {
 
 namespace {
 
-/// `mjd`: of its day, instead of the date.
+/// `mjd` is that of its day, instead of the date.
 std::optional<fsw::GpsTime> instant_on(std::optional<int> mjd, const Calendar& c, TimeSystem system) {
   if (!mjd || c.hour < 0 || c.hour > 23 || c.minute < 0 || c.minute > 59) return std::nullopt;
   const bool may_leap = system == TimeSystem::kUtc && c.hour == 23 && c.minute == 59 && has_leap_second(*mjd);

@@ -14,7 +14,7 @@ namespace {
 using files::TextLines;
 using fsw::Vector3;
 
-/// Of files that were thinned, whose first lines state the interval that they had.
+/// Returns the median step of a track: files that were thinned state the former interval in their first lines.
 double median_step_s(const Track& track) {
   std::vector<double> steps_s;
   for (std::size_t k = 1; k < track.states.size(); ++k)

@@ -13,7 +13,7 @@
 
 namespace vbar::sensors {
 
-/// Is called as things happen, in their order; overrides what it wants to see.
+/// Evaluates a sensor: called on events in their order; a class overrides the calls that it needs.
 class Evaluation {
  public:
   Evaluation() = default;
@@ -21,13 +21,13 @@ class Evaluation {
   Evaluation& operator=(const Evaluation&) = delete;
   virtual ~Evaluation() = default;
 
-  /// The truth of a measurement of this sensor, if its source is one whose truth is compared.
+  /// Receives the truth of a measurement of this sensor, if its source is one whose truth is compared.
   virtual void on_measured(const twins::TruthSnapshot& /*truth*/) {}
-  /// The bytes that the flight software received, from all sensors, with the step at `time`.
+  /// Receives the bytes that the flight software received, from all sensors, with the step at `time`.
   virtual void on_inputs(fsw::GpsTime /*time*/, std::span<const twins::Packet> /*inputs*/) {}
-  /// Its answer: telemetry and commands.
+  /// Receives the answer of the flight software: telemetry and commands.
   virtual void on_answer(fsw::GpsTime /*time*/, std::span<const fsw::packets::PacketView> /*answer*/) {}
-  /// The run is over, however it ended.
+  /// Ends the evaluation when the run is over, however it ended.
   virtual void finish() {}
 };
 
@@ -37,7 +37,7 @@ struct EvaluationContext {
   report::RunRecord& record;            ///< outlives the evaluation
 };
 
-/// An evaluation and the source whose truth it is told.
+/// Pairs an evaluation with the source whose truth it receives.
 struct NamedEvaluation {
   std::string source;  ///< "servicer/lidar"
   std::unique_ptr<Evaluation> evaluation;

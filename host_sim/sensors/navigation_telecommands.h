@@ -7,26 +7,26 @@
 
 namespace vbar::sensors {
 
-/// What navigation of the spacecraft uses, a sum of navigation_configuration::kUse: true states alone, or all that its
-/// sensors offer.
+/// Returns the sources that navigation of the spacecraft uses, a sum of navigation_configuration::kUse: true states
+/// alone, or all that its sensors offer.
 [[nodiscard]] std::int32_t sources_of(const mission::Spacecraft& servicer);
 
 [[nodiscard]] vbar::navigation_configuration navigation_configuration_of(const mission::Mission& mission,
                                                                          const mission::Spacecraft& servicer);
 
-/// `orientation`: the Earth's at the start, as the ground predicts it.
+/// Returns the telecommand of the Earth. `orientation`: the Earth's at the start, as the ground predicts it.
 [[nodiscard]] vbar::earth_configuration earth_configuration_of(const mission::Mission& mission,
                                                                const truth::EarthOrientationSeries& orientation);
 
-/// Where the ground, or preceding navigation, last knew the target to be, out of the true states of both at the start:
-/// mean ROE off by what the seed draws with the mission's sigmas. Throws std::runtime_error for states that are not
-/// orbits.
+/// Returns the a-priori orbit of the target, as the ground or preceding navigation has it, from the true states of both
+/// at the start: mean ROE with errors drawn by the seed with the mission's sigmas. Throws std::runtime_error for states
+/// that are not orbits.
 [[nodiscard]] vbar::target_apriori target_apriori_of(const mission::Mission& mission,
                                                      const mission::Spacecraft& servicer,
                                                      const fsw::orbit::CartesianState& servicer_state,
                                                      const fsw::orbit::CartesianState& target_state);
 
-/// None with ideal navigation, which needs none.
+/// Adds the telecommands to navigation; none with ideal navigation, which needs none.
 void add_navigation_telecommands(const TelecommandContext& context, Telecommands& telecommands);
 
 }  // namespace vbar::sensors

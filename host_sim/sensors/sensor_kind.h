@@ -1,5 +1,5 @@
 #pragma once
-// A kind of sensor: everything that the program knows about it, registered in sensor_kinds.cpp.
+// A kind of sensor: all properties by which the program handles it, registered in sensor_kinds.cpp.
 
 #include <any>
 #include <filesystem>
@@ -29,7 +29,8 @@ class Telecommands {
  public:
   Telecommands(fsw::GpsTime time, std::uint8_t spacecraft) : time_(time), spacecraft_(spacecraft) {}
 
-  /// `unit`: of the device that it is for. Throws std::runtime_error for a message that holds a NaN or an infinity.
+  /// Adds a telecommand; `unit` is that of the device that it is for. Throws std::runtime_error for a message that
+  /// holds a NaN or an infinity.
   template <class Message>
   void add(const Message& message, std::uint8_t unit = 0) {
     fsw::packets::PacketHeader header;
@@ -51,20 +52,20 @@ class Telecommands {
   std::vector<twins::Packet> packets_;
 };
 
-/// What is known on the ground when the telecommands of the start are made.
+/// Data that are known on the ground when the telecommands of the start are made.
 struct TelecommandContext {
   const mission::Mission& mission;
   const mission::Spacecraft& servicer;  ///< carries the flight software
   std::filesystem::path data_directory;
   const truth::EarthOrientationSeries& earth_orientation;
-  /// True state of a spacecraft at the start, from which a-priori knowledge is drawn.
+  /// Returns the true state of a spacecraft at the start, from which a-priori knowledge is drawn.
   std::function<fsw::orbit::CartesianState(std::string_view spacecraft)> state_at_start;
 };
 
 /// Objects that several sources of one run share, by name: the sky over all receivers.
 class SharedObjects {
  public:
-  /// The object of that name, which the first caller makes.
+  /// Returns the object of that name, which the first caller makes.
   template <class Object, class Make>
   std::shared_ptr<Object> get(const std::string& name, const Make& make) {
     std::any& object = objects_[name];
@@ -86,7 +87,7 @@ struct MakeContext {
   std::vector<std::string>& data_notes;  ///< on files that are left out in part: report::Summary::data_notes
 };
 
-/// What the packets of a log are restored for.
+/// Run for which the packets of a log are restored.
 struct RestoreContext {
   const mission::Mission& mission;
   const mission::Spacecraft& servicer;  ///< carries the sensors and the flight software; outlives what is made
@@ -103,18 +104,18 @@ struct MeasurementPackets {
 
 struct SensorKind : mission::SensorReader {
   MeasurementPackets packets{};
-  /// Adds what the flight software is told about the sensor before its first step. Null: nothing.
+  /// Adds the telecommands about the sensor that the flight software receives before its first step. Null: none.
   void (*add_telecommands)(const mission::Sensor& sensor, const TelecommandContext& context,
                            Telecommands& telecommands) = nullptr;
   /// Adds the sources of the sensor's packets. Throws what a recorded log and data files throw.
   void (*add_sources)(const mission::Sensor& sensor, const MakeContext& context,
                       std::vector<twins::NamedSource>& sources) = nullptr;
-  /// Adds what the summary says of the sensor: its source, the navigation by it. Null: nothing.
+  /// Adds the facts that the summary states about the sensor: its source, the navigation by it. Null: nothing.
   void (*add_facts)(const mission::Sensor& sensor, const mission::Mission& mission, const mission::Spacecraft& servicer,
                     report::RunFacts& facts) = nullptr;
   /// Compares the measurements of the sensor with the truth. Null, or a null result: nothing does.
   std::unique_ptr<Evaluation> (*evaluate)(const mission::Sensor& sensor, const EvaluationContext& context) = nullptr;
-  /// The evaluation receives the truth of each measurement.
+  /// Whether the evaluation receives the truth of each measurement.
   bool compares_measurements = false;
   /// Tables, summary figures and report section, for all sensors of the kind together.
   report::Extension report{};
@@ -124,12 +125,12 @@ struct SensorKind : mission::SensorReader {
                                                          twins::ImagesOfLog&& images) = nullptr;
 };
 
-/// "servicer/gnss"
+/// Returns the name of a source: "servicer/gnss".
 [[nodiscard]] inline std::string source_name(const mission::Spacecraft& carrier, const mission::Sensor& sensor) {
   return carrier.name + "/" + sensor.name;
 }
 
-/// Number of the sensor among those of its kind on the spacecraft: the unit in packet headers.
+/// Returns the number of the sensor among those of its kind on the spacecraft: the unit in packet headers.
 [[nodiscard]] inline std::uint8_t unit_of(const mission::Sensor& sensor, const mission::Spacecraft& carrier) {
   std::uint8_t unit = 0;
   for (const mission::Sensor& other : carrier.sensors) {
@@ -139,7 +140,7 @@ struct SensorKind : mission::SensorReader {
   return unit;
 }
 
-/// The settings of a sensor of the kind whose settings are `Settings`.
+/// Returns the settings of a sensor of the kind whose settings are `Settings`.
 template <class Settings>
 const Settings& settings_of(const mission::Sensor& sensor) {
   return dynamic_cast<const Settings&>(*sensor.settings);

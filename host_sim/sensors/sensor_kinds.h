@@ -13,16 +13,16 @@
 
 namespace vbar::sensors {
 
-/// All kinds, in the order in which the sensors of a spacecraft measure at one instant.
+/// Returns all kinds, in the order in which the sensors of a spacecraft measure at one instant.
 [[nodiscard]] std::span<const SensorKind* const> sensor_kinds();
 
-/// The kind of a sensor of a mission that was loaded with installation().
+/// Returns the kind of a sensor of a mission that was loaded with installation().
 [[nodiscard]] const SensorKind& kind_of(const mission::Sensor& sensor);
 
-/// Kinds, clock sources and testbeds of this program; the data folder is mission::data_directory().
+/// Returns the kinds, clock sources and testbeds of this program; the data folder is mission::data_directory().
 [[nodiscard]] mission::Installation installation();
 
-/// mission::load_mission with installation().
+/// Loads a mission by mission::load_mission with installation().
 mission::Mission load_mission(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 mission::Mission parse_mission(std::string_view text, const std::filesystem::path& file,
                                std::span<const std::string> overrides = {});
@@ -33,35 +33,34 @@ struct MadeSources {
   std::vector<std::string> data_notes{};                        ///< on the files that they read
 };
 
-/// The sources of all that the flight software of `servicer` receives from its sensors. `outlook`, which must outlive
-/// them, is required by testbeds.
+/// Makes the sources of all that the flight software of `servicer` receives from its sensors. `outlook`, which must
+/// outlive them, is required by testbeds.
 [[nodiscard]] MadeSources make_sources(const mission::Mission& mission, const mission::Spacecraft& servicer,
                                        const std::filesystem::path& data_directory,
                                        twins::TruthOutlook* outlook = nullptr);
 
-/// make_sources, or what a test has in its place.
+/// make_sources, or its replacement in a test.
 using MakeSources =
     std::function<MadeSources(const mission::Mission& mission, const mission::Spacecraft& servicer,
                               const std::filesystem::path& data_directory, twins::TruthOutlook* outlook)>;
 
-/// What restores the packets that a log holds in another form: that of the first kind with such packets. Throws
+/// Makes the restorer of packets that a log holds in another form: that of the first kind with such packets. Throws
 /// twins::DamagedLog. `mission` and `servicer` must outlive it.
 [[nodiscard]] std::unique_ptr<twins::TileSource> make_tile_source(const RestoreContext& context,
                                                                   twins::ImagesOfLog&& images);
 
-/// The evaluations of the sensors of `servicer`, whose kinds have one.
+/// Makes the evaluations of the sensors of `servicer`, whose kinds have one.
 [[nodiscard]] std::vector<NamedEvaluation> make_evaluations(const mission::Mission& mission,
                                                             const mission::Spacecraft& servicer,
                                                             report::RunRecord& record);
 
-/// What the summary says of the sensors of `servicer`.
+/// Adds the facts that the summary states about the sensors of `servicer`.
 void add_facts(const mission::Mission& mission, const mission::Spacecraft& servicer, report::RunFacts& facts);
 
-/// What the kinds and the testbeds add to record, summary and report.
+/// Returns the extensions by which the kinds and the testbeds add to record, summary and report.
 [[nodiscard]] report::Extensions extensions();
 
-/// What the flight software is told before its first step, in this order: guidance, its sensors, the waypoints, the
-/// mode.
+/// Returns the telecommands before the first step, in this order: guidance, its sensors, the waypoints, the mode.
 [[nodiscard]] std::vector<twins::Packet> telecommands_of(const TelecommandContext& context);
 
 }  // namespace vbar::sensors

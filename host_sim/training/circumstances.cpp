@@ -19,7 +19,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kEarthRadiusM = 6378137.0;
 constexpr double kCropRadii = 2.2;  // side of a crop in apparent radii of the target
 
-/// The target's centre on the detector: mostly with the complete target in the image if it fits, otherwise anywhere.
+/// The target's centre on the detector: mostly with the complete target in the image if it fits, else anywhere.
 Vector2 draw_centre(const twins::camera::Region& region, double radius_px, engine::RandomStream& stream) {
   const bool is_whole = stream.uniform() < 0.9;
   const auto along = [&](int first, int pixels) {

@@ -12,20 +12,20 @@
 
 namespace vbar::training {
 
-/// The close-range camera with its binning: TRON's lens, pixels in groups of 2 x 2 (data/cameras/tron.toml). Its
-/// exposure is kNominalExposureS.
+/// Returns the close-range camera with its binning: TRON's lens, pixels in groups of 2 x 2 (data/cameras/tron.toml).
+/// Its exposure is kNominalExposureS.
 [[nodiscard]] twins::camera::CameraSettings close_range_camera(const std::filesystem::path& data_directory);
 
-/// A white surface that faces the Sun and the camera fills 60 % of the full well.
+/// Exposure at which a white surface that faces the Sun and the camera fills 60 % of the full well.
 inline constexpr double kNominalExposureS = 47e-6;
 
-/// Camera axes: z boresight, x right, y down.
+/// Scene of a crop. Camera axes: z boresight, x right, y down.
 struct Circumstances {
-  fsw::Vector3 centre_of_mass_camera = fsw::Vector3::Zero();  ///< of the target, m
+  fsw::Vector3 centre_of_mass_camera = fsw::Vector3::Zero();  ///< position of the target's centre of mass, m
   fsw::Matrix3 R_camera_body = fsw::Matrix3::Identity();
   fsw::Vector3 sun_camera = fsw::Vector3::UnitZ();                   ///< unit
   fsw::Vector3 nadir_camera = fsw::Vector3::UnitY();                 ///< unit
-  Eigen::Quaterniond q_camera_eci = Eigen::Quaterniond::Identity();  ///< turns the sky
+  Eigen::Quaterniond q_camera_eci = Eigen::Quaterniond::Identity();  ///< orientation of the sky
   double phase_angle = 0.0;                                          ///< Sun, target, camera; rad
   double sunlit = 1.0;                                               ///< share of the Sun's disc
   double exposure = 1.0;                                             ///< in kNominalExposureS
@@ -35,9 +35,9 @@ struct Circumstances {
   fsw::pose::CropRegion region;
 };
 
-/// A camera 700 km up looks about level (seven in ten) or has the Earth in its field; the Sun stands 15 to 130 deg from
-/// behind the camera as the target sees it, at times to 150 deg, and is never behind the Earth; range 4 to 15 m;
-/// attitudes and places in the image as they come. Of `shape` only the radius counts.
+/// Draws the scene of a crop. A camera 700 km up looks about level (seven in ten) or has the Earth in its field. The
+/// Sun is 15 to 130 deg from behind the camera as the target sees it, at times to 150 deg, and is never behind the
+/// Earth. The range is 4 to 15 m; attitudes are uniform over all rotations. Only the radius of `shape` is used.
 [[nodiscard]] Circumstances draw_circumstances(const twins::camera::CameraSettings& camera, const TargetShape& shape,
                                                engine::RandomStream& stream);
 

@@ -5,7 +5,8 @@
 
 namespace vbar::training {
 
-/// Held-out crops show materials near those of the target's own file, unlike all crops of the other kinds.
+/// Purpose of a crop. Held-out crops show materials near those of the target's own file, unlike all crops of the other
+/// kinds.
 enum class CropKind { kTraining, kCalibration, kHeldOut };
 
 [[nodiscard]] constexpr std::string_view name_of(CropKind kind) {

@@ -29,7 +29,7 @@ constexpr std::array<int, 10> kWindowSides{144, 176, 208, 256, 304, 368, 448, 54
 constexpr double kMarginPx = 12.0;  // light from beside the crop
 constexpr double kTexels = 256.0;   // across the target: one and a half to three a sample of the crop
 constexpr double kEarthRadiusM = 6378137.0;
-// Of a pixel as a box, which gathering by bilinear weights exceeds by as much again.
+// Variance of a pixel as a box, which gathering by bilinear weights exceeds by as much again.
 constexpr double kPixelVariance = 1.0 / 12.0;
 constexpr double kYearsSinceJ2000 = 11.8;
 
@@ -209,7 +209,7 @@ void CropMaker::draw_target(const Circumstances& c, const CameraSettings& camera
     photons_.electrons[p] = photons_.electrons[p] * (1.0F - covered_[p]) + (1.0F - halo) * target_[p] + halo * halo_[p];
 }
 
-/// Stray light over all of it.
+/// Stray light covers the whole image.
 void CropMaker::draw_background(const Circumstances& c) {
   if (c.glow_electrons == 0.0) return;
   for (int y = 0; y < window_.height; ++y)

@@ -25,17 +25,17 @@ struct LabelledCrop {
   fsw::pose::CropSamples samples;  ///< not standardised
   Circumstances circumstances;
   std::vector<twins::camera::Material> materials;
-  std::array<fsw::Vector2, fsw::network::kKeypoints> pixels;  ///< of the keypoints on the detector
+  std::array<fsw::Vector2, fsw::network::kKeypoints> pixels;  ///< places of the keypoints on the detector
   std::array<fsw::Vector2, fsw::network::kKeypoints> cells;   ///< the same in cells of a map
   std::array<bool, fsw::network::kKeypoints> counts;          ///< no more than half a cell outside the map
 };
 
 class CropMaker {
  public:
-  /// Of a target of data/bodies. Throws std::runtime_error if a file of `data_directory` cannot be read.
+  /// Makes crops of a target of data/bodies. Throws std::runtime_error if a file of `data_directory` cannot be read.
   CropMaker(const std::filesystem::path& data_directory, const std::string& target, CropKind kind, std::uint64_t seed);
 
-  /// Crop `index` of the seed: independent of the crops made before (on the same processor).
+  /// Makes crop `index` of the seed, independent of the crops made before (on the same processor).
   void make(std::int64_t index, LabelledCrop& crop);
 
   [[nodiscard]] const twins::camera::CameraSettings& camera() const { return camera_; }

@@ -25,23 +25,23 @@ inline fsw::Vector3 normal_vector(engine::RandomStream& stream) {
   return {x, y, z};
 }
 
-/// Uniform on the sphere.
+/// Draws a unit vector uniform on the sphere.
 inline fsw::Vector3 unit_vector(engine::RandomStream& stream) {
   return normal_vector(stream).normalized();
 }
 
-/// Uniform on the circle about `axis` (unit).
+/// Draws a unit vector uniform on the circle about `axis` (unit).
 inline fsw::Vector3 perpendicular(const fsw::Vector3& axis, engine::RandomStream& stream) {
   const fsw::Vector3 v = unit_vector(stream);
   return (v - axis * axis.dot(v)).normalized();
 }
 
-/// At `angle` (rad) from `axis` (unit), uniform about it.
+/// Draws a unit vector at `angle` (rad) from `axis` (unit), uniform about it.
 inline fsw::Vector3 at_angle(const fsw::Vector3& axis, double angle, engine::RandomStream& stream) {
   return std::cos(angle) * axis + std::sin(angle) * perpendicular(axis, stream);
 }
 
-/// Uniform on SO(3).
+/// Draws an attitude uniform on SO(3).
 inline Eigen::Quaterniond attitude(engine::RandomStream& stream) {
   const double w = stream.normal(), x = stream.normal(), y = stream.normal(), z = stream.normal();
   return Eigen::Quaterniond(w, x, y, z).normalized();

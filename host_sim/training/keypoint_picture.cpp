@@ -17,7 +17,7 @@ namespace {
 using fsw::Vector3;
 using twins::camera::CadModel;
 
-constexpr double kSide = 340.0;  // of a view, px
+constexpr double kSide = 340.0;  // side of a view, px
 constexpr int kColumns = 3;
 
 struct View {

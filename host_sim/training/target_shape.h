@@ -11,10 +11,10 @@ namespace vbar::training {
 /// The target in body axes, everything from the centre of mass, m.
 struct TargetShape {
   fsw::pose::KeypointShape keypoints;
-  fsw::Vector3 model_origin = fsw::Vector3::Zero();  ///< of the CAD file
-  double radius_m = 0.0;                             ///< of the farthest keypoint
+  fsw::Vector3 model_origin = fsw::Vector3::Zero();  ///< origin of the CAD file
+  double radius_m = 0.0;                             ///< distance of the farthest keypoint
 
-  /// Of the target whose body file has this name; throws mission::MissionError.
+  /// Loads the target whose body file has this name; throws mission::MissionError.
   static TargetShape load(const std::filesystem::path& data_directory, const std::string& target);
 };
 

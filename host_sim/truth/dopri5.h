@@ -24,7 +24,7 @@ namespace vbar::truth {
 struct IntegrationStatistics {
   std::int64_t accepted_steps = 0;
   std::int64_t rejected_steps = 0;
-  std::int64_t evaluations = 0;  ///< of the right-hand side
+  std::int64_t evaluations = 0;  ///< number of evaluations of the right-hand side
 };
 
 /// One accepted step's continuous solution: a polynomial of order 4 in time, once continuously differentiable across
@@ -37,7 +37,7 @@ struct DenseStep {
   double size = 0.0;   ///< its length, negative if time runs backwards
   State c[5];          ///< Hairer et al., eq. II.6.13 ff.
 
-  /// The solution at `time`; meant for times within the step.
+  /// Returns the solution at `time`; meant for times within the step.
   State operator()(double time) const {
     const double s = (time - start) / size;
     const double r = 1.0 - s;
@@ -90,7 +90,8 @@ class Dopri5 {
   /// Adds a constant under which the right-hand side does not change (a full revolution of an angle).
   void translate(const State& offset) { state_ += offset; }
 
-  /// One accepted step, not beyond `limit`. Throws std::runtime_error if no step, however small, meets the tolerance.
+  /// Takes one accepted step, not beyond `limit`. Throws std::runtime_error if no step, however small, meets the
+  /// tolerance.
   void step(double limit) {
     while (true) {
       // A step that would leave less than a hundredth of itself is stretched or cut to end at the limit.
@@ -123,7 +124,7 @@ class Dopri5 {
     }
   }
 
-  /// One step of the integrator's own choice.
+  /// Takes one step of the integrator's own choice.
   void step() { step(direction_ * std::numeric_limits<double>::infinity()); }
 
   /// Steps until exactly `end`, which must not lie before the current time.
@@ -147,8 +148,8 @@ class Dopri5 {
     accept(time, h, try_step(h));
   }
 
-  /// One step, ended at the first sign change of g(t, y) inside it, if any: returns whether there was one. The step is
-  /// searched at `samples` equal parts, and the change found to `resolution`.
+  /// Takes one step, ended at the first sign change of g(t, y) inside it, if any: returns whether there was one. The
+  /// step is searched at `samples` equal parts, and the change found to `resolution`.
   template <class EventFunction>
   bool step_to_event(const EventFunction& g, double limit, int samples, double resolution) {
     step(limit);
@@ -198,7 +199,7 @@ class Dopri5 {
     return s;
   }
 
-  /// Root mean square over components of error estimate over tolerance.
+  /// Returns the root mean square over components of error estimate over tolerance.
   double error_norm(double h, const Stages& s) const {
     const State error = h * (71.0 / 57600.0 * rate_ - 71.0 / 16695.0 * s.k3 + 71.0 / 1920.0 * s.k4 -
                              17253.0 / 339200.0 * s.k5 + 22.0 / 525.0 * s.k6 - 1.0 / 40.0 * s.k7);
@@ -231,7 +232,7 @@ class Dopri5 {
     ++statistics_.accepted_steps;
   }
 
-  /// Length of the first step: Hairer et al., section II.4, "Starting Step Size".
+  /// Returns the length of the first step: Hairer et al., section II.4, "Starting Step Size".
   double first_step() {
     const auto norm = [&](const State& v) {
       double sum = 0.0;
@@ -256,7 +257,7 @@ class Dopri5 {
   double time_ = 0.0;
   State state_ = State::Zero();
   State rate_ = State::Zero();
-  State start_state_ = State::Zero();  ///< of the last step
+  State start_state_ = State::Zero();  ///< state at the start of the last step
   State start_rate_ = State::Zero();
   double step_ = 0.0;
   double previous_error_ = kSmallestError;

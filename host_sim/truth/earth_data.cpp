@@ -18,8 +18,8 @@ namespace {
 constexpr const char* kBundledOrientation = "earth/eop_2009_2013.csv";
 constexpr const char* kBundledWeather = "earth/space_weather_2009_2013.csv";
 
-/// The integrator's last step goes beyond the end by up to its length: a minute or two in a low orbit. A longer one, of
-/// a high orbit, that overruns the data is refused when it happens.
+/// Longest last step of the integrator, which goes beyond the end by up to its length: a minute or two in a low orbit.
+/// A longer one, of a high orbit, that overruns the data is rejected when it happens.
 constexpr std::int64_t kLongestStep_s = 3600;
 
 fsw::GpsTime last_instant(const TruthSettings& settings) {
@@ -27,7 +27,7 @@ fsw::GpsTime last_instant(const TruthSettings& settings) {
   return settings.end + fsw::duration_of_seconds(kLongestStep_s);
 }
 
-/// Rejects before the run starts an epoch or end for which `look_up` has no data. `look_up`: of an instant, throws
+/// Rejects before the run starts an epoch or end for which `look_up` has no data. `look_up` takes an instant and throws
 /// std::out_of_range.
 template <class LookUp>
 void check_reach(const TruthSettings& settings, const std::filesystem::path& file, const LookUp& look_up) {
@@ -71,7 +71,7 @@ double predicted_pole_sigma_arcsec(double days) {
 }
 
 constexpr double kMetresPerArcsecond = 6378137.0 * M_PI / 648000.0;  // on the equator
-constexpr double kArcsecondsPerSecond = 15.041;                      // of the Earth's rotation
+constexpr double kArcsecondsPerSecond = 15.041;                      // rate of the Earth's rotation
 
 void note_predicted_orientation(const TruthSettings& settings, const std::filesystem::path& file, ForceData& data) {
   const auto from = data.earth_orientation->predicted_from();

@@ -6,8 +6,9 @@
 
 namespace vbar::truth {
 
-/// Both throw std::runtime_error for a missing or damaged file or, where settings do not accept predictions, a
-/// predicted value, and std::out_of_range if a file that is named does not reach from the epoch to the end.
+/// Load data of the Earth. Both throw std::runtime_error for a missing or damaged file or, where settings do not accept
+/// predictions, a predicted value, and std::out_of_range if a file that is named does not reach from the epoch to the
+/// end.
 void load_earth_orientation(const TruthSettings& settings, ForceData& data);
 void load_space_weather(const TruthSettings& settings, ForceData& data);
 

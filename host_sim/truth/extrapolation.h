@@ -8,16 +8,16 @@
 
 namespace vbar::truth {
 
-/// Of a point mass at the origin; gm in m^3/s^2.
+/// Returns the acceleration by a point mass at the origin; gm in m^3/s^2.
 [[nodiscard]] fsw::Vector3 central_acceleration(double gm, const fsw::Vector3& position_eci);
 
-/// State `seconds` later under the point mass and a constant perturbation (m/s^2), by one step of the classical
-/// Runge-Kutta method of fourth order: over a second of a low orbit its own error is far below a nanometre, over 10 s
-/// some micrometres.
+/// Returns the state `seconds` later under the point mass and a constant perturbation (m/s^2), by one step of the
+/// classical Runge-Kutta method of fourth order: over a second of a low orbit its own error is far below a nanometre,
+/// over 10 s some micrometres.
 [[nodiscard]] fsw::orbit::CartesianState orbit_ahead(const fsw::orbit::CartesianState& state, double gm,
                                                      const fsw::Vector3& perturbation_eci, double seconds);
 
-/// Attitude `seconds` later with a constant angular acceleration (rad/s^2, body axes).
+/// Returns the attitude `seconds` later with a constant angular acceleration (rad/s^2, body axes).
 [[nodiscard]] AttitudeState attitude_ahead(AttitudeState attitude, const fsw::Vector3& angular_acceleration_body,
                                            double seconds);
 

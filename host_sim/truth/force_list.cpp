@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* kAtmosphereFile = "atmosphere/nrlmsise00.csv";
 
-/// Of a tide-free model without the force of the tides.
+/// Returns the note on a tide-free model without the force of the tides.
 std::string note_on_permanent_tide(const std::string& model, bool is_added) {
   constexpr std::string_view kSize =
       "some 18 m along the track of a low orbit in a day: programs that use the file's C20 differ by that";

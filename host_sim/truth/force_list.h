@@ -19,7 +19,7 @@ namespace vbar::truth {
 /// Large constant data: loaded once, shared by the forces of all spacecraft and by all threads.
 struct ForceData {
   std::shared_ptr<const GravityField> gravity;
-  TideSystem tide_system = TideSystem::kZeroTide;  ///< of the gravity model; read only if the tides act
+  TideSystem tide_system = TideSystem::kZeroTide;  ///< tide system of the gravity model; read only if the tides act
   std::shared_ptr<const EarthOrientationSeries> earth_orientation;
   std::shared_ptr<const Nrlmsise00Tables> atmosphere;  ///< null without drag, as is the next
   std::shared_ptr<const SpaceWeather> space_weather;
@@ -35,8 +35,8 @@ ForceData load_force_data(const TruthSettings& settings);
 /// loaded. Throws as load_force_data().
 void load_atmosphere(const TruthSettings& settings, ForceData& data);
 
-/// The forces on one spacecraft, gravity first. Throws std::invalid_argument, naming spacecraft, force and property, if
-/// a force needs a mass, an area or a coefficient that the spacecraft does not have.
+/// Makes the forces on one spacecraft, gravity first. Throws std::invalid_argument, naming spacecraft, force and
+/// property, if a force needs a mass, an area or a coefficient that the spacecraft does not have.
 std::vector<std::unique_ptr<Force>> make_forces(const TruthSettings& settings, const ForceData& data,
                                                 const SpacecraftSettings& spacecraft);
 

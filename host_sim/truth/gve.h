@@ -8,12 +8,12 @@
 
 namespace vbar::truth {
 
-/// Elements as the integrator's vector [a, ex, ey, i, raan, u], and back.
+/// Convert elements to the integrator's vector [a, ex, ey, i, raan, u], and back.
 fsw::Vector6 vector_from_elements(const fsw::orbit::QnsElements& elements);
 fsw::orbit::QnsElements elements_from_vector(const fsw::Vector6& vector);
 
-/// Time derivative of [a, ex, ey, i, raan, u] (SI and radians) under the perturbing acceleration (m/s^2, in the
-/// spacecraft's RTN, without the point mass). `geometry` is that of `osculating`. Singular at inclination 0 and pi.
+/// Returns the time derivative of [a, ex, ey, i, raan, u] (SI and radians) under the perturbing acceleration (m/s^2, in
+/// the spacecraft's RTN, without the point mass). `geometry` is that of `osculating`. Singular at inclination 0 and pi.
 /// Source: Gauss's equations (e.g. Battin 1999, section 10.5) for ex = e cos w, ey = e sin w, u = w + M.
 fsw::Vector6 gve_rates(const fsw::orbit::QnsElements& osculating, const OrbitGeometry& geometry,
                        const fsw::Vector3& perturbation_rtn);

@@ -16,19 +16,19 @@ struct OrbitGeometry {
   double h = 0.0;          ///< specific angular momentum, m^2/s
   double n = 0.0;          ///< mean motion, rad/s
   double eta = 0.0;        ///< sqrt(1 - e^2)
-  double cos_theta = 0.0;  ///< of the true argument of latitude
+  double cos_theta = 0.0;  ///< cosine of the true argument of latitude
   double sin_theta = 0.0;
   double cos_i = 0.0;
   double sin_i = 0.0;
 };
 
-/// Geometry of osculating elements under `gm` (m^3/s^2). Throws std::domain_error unless the orbit is an ellipse (a >
-/// 0, e < 1).
+/// Returns the geometry of osculating elements under `gm` (m^3/s^2). Throws std::domain_error unless the orbit is an
+/// ellipse (a > 0, e < 1).
 OrbitGeometry orbit_geometry(const fsw::orbit::QnsElements& osculating, double gm);
 
-/// Osculating elements of an ECI state; raan and u in (-pi, pi]. Throws std::domain_error for an orbit that is not an
-/// ellipse (parabolic, hyperbolic, rectilinear), that is equatorial (inclination within 1e-8 rad of 0 or pi, where the
-/// elements are singular) or not finite.
+/// Returns the osculating elements of an ECI state; raan and u in (-pi, pi]. Throws std::domain_error for an orbit that
+/// is not an ellipse (parabolic, hyperbolic, rectilinear), that is equatorial (inclination within 1e-8 rad of 0 or pi,
+/// where the elements are singular) or not finite.
 fsw::orbit::QnsElements elements_from_cartesian(const fsw::orbit::CartesianState& state, double gm);
 
 }  // namespace vbar::truth

@@ -39,55 +39,56 @@ struct ForceRegime {
   double longest_step = std::numeric_limits<double>::infinity();
 };
 
-/// Not thread-safe: one object per spacecraft.
+/// Equations of motion of one spacecraft. Not thread-safe: one object per spacecraft.
 class SpacecraftDynamics {
  public:
-  /// A spacecraft this low (m, above a sphere of the Earth's radius, so up to 101 km above the ellipsoid near a pole)
-  /// has re-entered: no orbit is completed there (perigees of the last orbits of real satellites lie at 80 to 90 km,
-  /// McDowell 2018), and free-molecular drag no longer applies.
+  /// Altitude of re-entry. A spacecraft this low (m, above a sphere of the Earth's radius, so up to 101 km above the
+  /// ellipsoid near a pole) has re-entered: no orbit is completed there (perigees of the last orbits of real satellites
+  /// lie at 80 to 90 km, McDowell 2018), and free-molecular drag no longer applies.
   static constexpr double kReentryAltitude = 80e3;
 
-  /// `name` for messages; `gm` (m^3/s^2) and `earth_radius` (m) of the central body; forces beside the point mass.
+  /// Makes the dynamics: `name` for messages; `gm` (m^3/s^2) and `earth_radius` (m) of the central body; forces beside
+  /// the point mass.
   SpacecraftDynamics(std::string name, double gm, double earth_radius, EarthRotation earth_rotation,
                      std::vector<std::unique_ptr<Force>> forces);
 
-  /// Rates of the osculating elements [a, ex, ey, i, raan, u] `seconds` after the epoch. Throws std::domain_error, with
-  /// the date, if the spacecraft is below kReentryAltitude or its orbit is not an ellipse.
+  /// Returns the rates of the osculating elements [a, ex, ey, i, raan, u] `seconds` after the epoch. Throws
+  /// std::domain_error, with the date, if the spacecraft is below kReentryAltitude or its orbit is not an ellipse.
   fsw::Vector6 element_rates(double seconds, const fsw::Vector6& elements);
 
-  /// Sum of all forces, m/s^2 in ECI, beside the point mass: what a Cartesian integration would use. Throws as
-  /// element_rates() on re-entry.
+  /// Returns the sum of all forces, m/s^2 in ECI, beside the point mass: what a Cartesian integration would use. Throws
+  /// as element_rates() on re-entry.
   fsw::Vector3 perturbation_eci(double seconds, const fsw::orbit::CartesianState& state);
 
-  /// The shares of the sum, in the forces' order, in the regime of that very instant; the regime set is left
+  /// Returns the shares of the sum, in the forces' order, in the regime of that very instant; the regime set is left
   /// unchanged.
   std::vector<ForceAcceleration> accelerations(double seconds, const fsw::orbit::CartesianState& state);
 
-  /// The edges of all forces, numbered consecutively, and their values.
+  /// Number of the edges of all forces, which are numbered consecutively, and the value of one.
   int edge_count() const { return static_cast<int>(edges_.size()); }
   double edge(int index, double seconds, const fsw::orbit::CartesianState& state);
 
   const ForceRegime& regime() const { return regime_; }
   void set_regime(const ForceRegime& regime);
 
-  /// The regime of an instant.
+  /// Enters the regime of an instant.
   void enter_regime_of(double seconds, const fsw::orbit::CartesianState& state);
 
-  /// From here on the motion is on the other side of an edge.
+  /// Crosses an edge: from here on the motion is on the other side of an edge.
   void cross_edge(int index, double seconds, const fsw::orbit::CartesianState& state);
 
-  /// From here on the motion is in the interval that begins at a jump.
+  /// Enters an interval: from here on the motion is in the interval that begins at a jump.
   void enter_interval(double seconds);
 
-  /// The first date after `seconds` at which a force jumps by itself.
+  /// Returns the first date after `seconds` at which a force jumps by itself.
   double next_jump_after(double seconds) const;
 
-  /// Inputs of forces and torques at an instant. The Sun and the Moon only if a force needs them or
+  /// Returns the inputs of forces and torques at an instant. The Sun and the Moon only if a force needs them or
   /// provide_sun_and_moon() was called.
   ForceInput input_at(double seconds, const fsw::orbit::CartesianState& state);
   void provide_sun_and_moon() { needs_sun_and_moon_ = true; }
 
-  /// Geocentric position of the Sun, m.
+  /// Returns the geocentric position of the Sun, m.
   fsw::Vector3 sun_eci_at(double seconds);
 
   /// Measures the time of each force from now on (which adds some 50 ns per force), or stops measuring.
@@ -96,7 +97,7 @@ class SpacecraftDynamics {
 
   const std::string& name() const { return name_; }
   double gm() const { return gm_; }
-  /// UTC of an instant, for messages.
+  /// Returns the UTC of an instant, for messages.
   std::string date(double seconds) const;
 
  private:

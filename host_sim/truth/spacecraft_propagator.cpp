@@ -23,7 +23,7 @@ Tolerance element_tolerance(double tolerance) {
 
 constexpr double kTwoPi = 2.0 * M_PI;
 
-/// Runs `work` and prefixes the message of what it throws with the spacecraft's name.
+/// Runs `work` and prefixes the messages of its exceptions with the spacecraft's name.
 template <class Work>
 void naming(const std::string& name, const Work& work) {
   try {

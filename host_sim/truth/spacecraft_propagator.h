@@ -39,18 +39,18 @@ class SpacecraftPropagator {
   /// and the date, on re-entry or if the orbit ceases to be an ellipse.
   void advance_to(double seconds);
 
-  /// State at the current time.
+  /// Returns the state at the current time.
   fsw::orbit::CartesianState state() const { return state_at(current_); }
 
-  /// State at a time from the beginning of the steps still kept (some minutes; kKeptSteps) to the end of the last one,
-  /// which may lie after the current time. At an impulse's time: after it. Throws std::out_of_range outside, stating
-  /// what is kept.
+  /// Returns the state at a time from the beginning of the steps still kept (some minutes; kKeptSteps) to the end of
+  /// the last one, which may lie after the current time. At an impulse's time: after it. Throws std::out_of_range
+  /// outside, stating what is kept.
   fsw::orbit::CartesianState state_at(double seconds) const;
 
-  /// The same with all of the acceleration.
+  /// Returns the state with the total acceleration.
   OrbitalMotion motion_at(double seconds) const;
 
-  /// Input of torques at a time as in state_at; for a time after the end of the last step, the input there:
+  /// Returns the input of torques at a time as in state_at; for a time after the end of the last step, the input there:
   /// the first guess of an attitude step, or rounding, may reach beyond.
   ForceInput surroundings_at(double seconds) const;
 
@@ -58,23 +58,23 @@ class SpacecraftPropagator {
   void set_attitude(std::unique_ptr<AttitudeMotion> attitude) { attitude_ = std::move(attitude); }
   bool has_attitude() const { return attitude_ != nullptr; }
 
-  /// Null if it has none.
+  /// Returns the attitude motion; null if it has none.
   AttitudeMotion* attitude() { return attitude_.get(); }
 
-  /// Attitude at a time as in state_at. Throws std::logic_error if the spacecraft has none, std::domain_error, naming
-  /// the spacecraft, where it is not defined.
+  /// Returns the attitude at a time as in state_at. Throws std::logic_error if the spacecraft has none,
+  /// std::domain_error, naming the spacecraft, where it is not defined.
   AttitudeState attitude_at(double seconds) const;
 
   /// Adds `dv_rtn` (m/s, in the spacecraft's own RTN) to the velocity at the current time.
   void apply_impulse_rtn(const fsw::Vector3& dv_rtn);
 
-  /// Whether advance_to(seconds) would have to integrate.
+  /// Returns whether advance_to(seconds) would have to integrate.
   bool needs_steps_to(double seconds) const { return integrator_.time() < seconds; }
 
-  /// End of the last step.
+  /// Returns the end of the last step.
   double known_until() const { return integrator_.time(); }
 
-  /// The forces' shares of the acceleration at the current time.
+  /// Returns the forces' shares of the acceleration at the current time.
   std::vector<ForceAcceleration> accelerations() { return dynamics_->accelerations(current_, state()); }
 
   SpacecraftDynamics& dynamics() { return *dynamics_; }

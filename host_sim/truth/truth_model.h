@@ -24,12 +24,13 @@ struct TruthStatistics {
   std::int64_t steps = 0;
   std::int64_t rejected_steps = 0;
   std::int64_t force_evaluations = 0;
-  std::int64_t edges_crossed = 0;  ///< of shadows
-  double wall_s = 0.0;             ///< wall-clock time spent inside the model; of all only
+  std::int64_t edges_crossed = 0;  ///< number of shadow edges crossed
+  double wall_s = 0.0;             ///< wall-clock time spent inside the model; stated for all spacecraft together only
 };
 
-/// Every spacecraft has its own integrator with the same settings, and its steps depend on its own state and impulses
-/// only: not on the times asked for, the other spacecraft, or the number of threads. All calls from one thread.
+/// Truth of all spacecraft. Every spacecraft has its own integrator with the same settings, and its steps depend on its
+/// own state and impulses only: not on the times asked for, the other spacecraft, or the number of threads. All calls
+/// from one thread.
 class TruthModel {
  public:
   /// Loads the data. Throws std::invalid_argument for a setting out of range, std::runtime_error for a missing or
@@ -41,12 +42,12 @@ class TruthModel {
   /// std::domain_error for a state that is not an orbit.
   std::size_t add_spacecraft(const SpacecraftSettings& spacecraft);
 
-  /// The same without a surface: where no force acts on it.
+  /// Adds a spacecraft without a surface, on which no surface force acts.
   std::size_t add_spacecraft(const std::string& name, const fsw::orbit::CartesianState& osculating) {
     return add_spacecraft({name, osculating, {}});
   }
 
-  /// What the forces share.
+  /// Returns the data that the forces share.
   const ForceData& data() const { return data_; }
 
   /// Adds a sentence to the notes of the data.
@@ -64,19 +65,20 @@ class TruthModel {
 
   fsw::GpsTime time() const { return time_; }
 
-  /// Osculating state in GCRF at the current time. Throws std::out_of_range for an index that no spacecraft has.
+  /// Returns the osculating state in GCRF at the current time. Throws std::out_of_range for an index that no spacecraft
+  /// has.
   fsw::orbit::CartesianState state(std::size_t index) const;
   fsw::orbit::CartesianState state(std::string_view name) const { return state(index_of(name)); }
 
-  /// State at another time near the current one: within the integration steps kept, from some minutes before to at
-  /// least the current time. Throws std::out_of_range outside.
+  /// Returns the state at another time near the current one: within the integration steps kept, from some minutes
+  /// before to at least the current time. Throws std::out_of_range outside.
   fsw::orbit::CartesianState state_at(std::size_t index, fsw::GpsTime time) const;
 
-  /// State at a time up to a second or so after the current one. No step is taken for it: beyond the last one the
-  /// perturbations are those of the current time (to a micrometre in a second).
+  /// Returns the state at a time up to a second or so after the current one. No step is taken for it: beyond the last
+  /// one the perturbations are those of the current time (to a micrometre in a second).
   fsw::orbit::CartesianState state_ahead(std::size_t index, fsw::GpsTime time) const;
 
-  /// All of the acceleration at a state of about the current time, the point mass included.
+  /// Returns the total acceleration at a state of about the current time, the point mass included.
   fsw::Vector3 acceleration_eci(std::size_t index, const fsw::orbit::CartesianState& state) const;
 
   /// Adds a velocity (m/s, in the spacecraft's own RTN) at the current time.
@@ -84,7 +86,7 @@ class TruthModel {
 
   /// Gives a spacecraft an attitude from the current time on. Throws std::invalid_argument for inconsistent settings
   /// (an invalid body, parallel axes, an unknown spacecraft to point at). `later`: the attitudes that follow, in order
-  /// of time; of those that begin before the current time, or at it, the last one holds at once, without a slew.
+  /// of time; the last one of those that begin before the current time, or at it, holds at once, without a slew.
   void set_attitude(std::size_t index, const AttitudeSettings& settings,
                     const std::vector<LaterAttitudeSettings>& later = {});
 
@@ -96,18 +98,18 @@ class TruthModel {
 
   bool has_attitude(std::size_t index) const { return spacecraft_.at(index)->has_attitude(); }
 
-  /// Attitude at the current time. Throws std::logic_error if the spacecraft has none, std::domain_error where its
-  /// pointing does not determine it.
+  /// Returns the attitude at the current time. Throws std::logic_error if the spacecraft has none, std::domain_error
+  /// where its pointing does not determine it.
   AttitudeState attitude(std::size_t index) const { return attitude_at(index, time_); }
 
-  /// Attitude at another time near the current one, as state_at; of a spacecraft that points at another, where the
-  /// states of both are kept.
+  /// Returns the attitude at another time near the current one, as state_at; for a spacecraft that points at another,
+  /// where the states of both are kept.
   AttitudeState attitude_at(std::size_t index, fsw::GpsTime time) const;
 
   TruthStatistics statistics() const;
   TruthStatistics statistics(std::size_t index) const;
 
-  /// The forces' shares of a spacecraft's acceleration beside the Earth's point mass, at the current time.
+  /// Returns the forces' shares of a spacecraft's acceleration beside the Earth's point mass, at the current time.
   std::vector<ForceAcceleration> accelerations(std::size_t index) { return spacecraft_.at(index)->accelerations(); }
 
   /// Measures the time of each force from now on, or stops measuring. Times are sums over the spacecraft, in the

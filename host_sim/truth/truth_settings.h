@@ -28,17 +28,18 @@ struct TruthSettings {
   std::filesystem::path gravity_file = "gravity/ggm05s_120.txt";
   std::filesystem::path earth_orientation_file = kBundled;  ///< or kNone
   std::filesystem::path space_weather_file = kBundled;      ///< or kConstant
-  double constant_f107 = 150.0;                             ///< of kConstant, 1e-22 W/m^2/Hz
+  double constant_f107 = 150.0;                             ///< flux of kConstant, 1e-22 W/m^2/Hz
   double constant_ap = 15.0;
-  bool accept_predictions = true;  ///< of Earth orientation and space weather in published files
+  bool accept_predictions = true;  ///< accepts predicted Earth orientation and space weather in published files
 
   static constexpr const char* kBundled = "bundled";
   static constexpr const char* kNone = "none";
   static constexpr const char* kConstant = "constant";
 
-  /// Below it rounding would determine the step size.
+  /// Smallest tolerance: below it rounding would determine the step size.
   static constexpr double kSmallestTolerance = 1e-14;
-  /// Above it the error of a day reaches the size of the orbit: the steps no longer resolve the forces.
+  /// Largest tolerance: above it the error of a day reaches the size of the orbit: the steps no longer resolve the
+  /// forces.
   static constexpr double kLargestTolerance = 1e-6;
 };
 

@@ -11,7 +11,7 @@ namespace vbar::twins {
 
 /// Result of the execution of a command.
 struct Execution {
-  fsw::GpsTime time;  ///< of the impulse, or of the refused one
+  fsw::GpsTime time;  ///< time of the impulse, or of the rejected one
   vbar::executed_maneuver
       maneuver{};  ///< accepted or not, and the impulse that happened, m/s in the servicer's RTN at `time`
   Packet packet;   ///< `maneuver` as sent to the flight software; empty: nothing is sent
@@ -25,8 +25,8 @@ class Actuator {
   Actuator& operator=(const Actuator&) = delete;
   virtual ~Actuator() = default;
 
-  /// Executes `command` at `burn_time`, the time tag of its packet. A burn before `now` is refused: accepted is 0, the
-  /// impulse 0. Applying the impulse to the truth at Execution::time, and delivering the packet, is the caller's.
+  /// Executes `command` at `burn_time`, the time tag of its packet. A burn before `now` is rejected: accepted is 0, the
+  /// impulse 0. The caller applies the impulse to the truth at Execution::time and delivers the packet.
   virtual Execution execute(const vbar::maneuver_command& command, fsw::GpsTime burn_time, fsw::GpsTime now) = 0;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// The log of a run that is flown again: event by event, what is flown now has to be what the log holds.
+// The log of a recorded run against which a repetition of the run is compared, event by event.
 
 #include <cstdint>
 #include <filesystem>
@@ -14,13 +14,13 @@
 
 namespace vbar::twins {
 
-/// Records are missing from the middle of a log; the message names file and place.
+/// Error: records are missing from the middle of a log; the message names file and place.
 class ThinnedLog : public DamagedLog {
  public:
   using DamagedLog::DamagedLog;
 };
 
-/// What is flown now is not what the log holds; the message names step and packet.
+/// Error: the repetition differs from the log; the message names step and packet.
 class FlownOtherwise : public std::runtime_error {
  public:
   FlownOtherwise(fsw::GpsTime time, const std::string& what) : std::runtime_error(what), time_(time) {}
@@ -37,24 +37,24 @@ class FlownLog {
   /// damage elsewhere, and std::runtime_error that names a file that cannot be read.
   explicit FlownLog(const std::filesystem::path& file);
 
-  /// Events before the damage or cut, the end excepted.
+  /// Returns the number of events before the damage or cut, the end excepted.
   [[nodiscard]] std::uint64_t events() const { return events_; }
-  /// Steps that were begun, from 0 on, and the time of the last one.
+  /// Number of steps that the run began, from 0 on, and the time of the last one.
   [[nodiscard]] std::uint32_t steps() const { return steps_; }
   [[nodiscard]] fsw::GpsTime time() const { return time_; }
-  /// The run closed it.
+  /// Whether the run closed the log.
   [[nodiscard]] bool has_end() const { return has_end_; }
-  /// The byte from which on it is damaged or cut.
+  /// Returns the byte from which on it is damaged or cut.
   [[nodiscard]] std::optional<std::uint64_t> damaged_from() const { return damaged_from_; }
 
-  /// Nothing from this time on is compared.
+  /// Limits the comparison: nothing from this time on is compared.
   void compare_before(fsw::GpsTime time) { until_ = lcm_timestamp(time); }
 
-  /// The next event of the flight (twins::EventCheck). Throws FlownOtherwise, or DamagedLog if it differs from an event
-  /// whose checksum is wrong.
+  /// Compares the next event of the repetition (twins::EventCheck). Throws FlownOtherwise, or DamagedLog if it differs
+  /// from an event whose checksum is wrong.
   void compare(fsw::GpsTime time, const LcmEvent& flown);
 
-  /// Everything that was to be compared has been, and was identical.
+  /// Whether everything that was to be compared has been, and was identical.
   [[nodiscard]] bool is_over() const { return is_over_; }
 
  private:

@@ -19,12 +19,12 @@ class GnssSensor final : public PacketSource {
  public:
   struct Settings {
     std::string spacecraft;          ///< that carries the receiver
-    std::uint8_t flight_number = 0;  ///< of the spacecraft whose flight software receives the packets
+    std::uint8_t flight_number = 0;  ///< number of the spacecraft whose flight software receives the packets
     fsw::GpsTime start;              ///< first epoch
     fsw::Duration period;            ///< > 0, integer milliseconds: between calls of the receiver
   };
 
-  /// `crosslink`: how the bytes reach the flight software; null: by wire. `receiver` must not be null.
+  /// Makes a sensor. `crosslink`: how the bytes reach the flight software; null: by wire. `receiver` must not be null.
   GnssSensor(const Settings& settings, std::unique_ptr<gnss::ReceiverBytes> receiver,
              std::unique_ptr<gnss::Crosslink> crosslink);
 
@@ -38,8 +38,9 @@ class GnssSensor final : public PacketSource {
 
   [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override;
 
-  /// The packets of one epoch: receiver bytes in pieces, and the attitude. No packets if the crosslink loses them,
-  /// which applies to all of them. kFailed if the truth lacks the spacecraft or its attitude, or the receiver fails.
+  /// Measures the packets of one epoch: receiver bytes in pieces, and the attitude. No packets if the crosslink loses
+  /// them, which applies to all of them. kFailed if the truth lacks the spacecraft or its attitude, or the receiver
+  /// fails.
   Measurement measure(const TruthSnapshot& truth) override;
 
   [[nodiscard]] const gnss::ReceiverBytes& receiver() const { return *receiver_; }

@@ -24,7 +24,7 @@ class IdealNavigation final : public PacketSource {
 
   [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override;
 
-  /// One ideal_navigation packet. kFailed if the truth lacks a spacecraft or holds a NaN.
+  /// Measures one ideal_navigation packet. kFailed if the truth lacks a spacecraft or holds a NaN.
   Measurement measure(const TruthSnapshot& truth) override;
 
  private:

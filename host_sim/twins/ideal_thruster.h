@@ -18,10 +18,12 @@ class IdealThruster final : public Actuator {
     double pointing_error_rad = 0.0;  ///< 1 sigma, about each of two axes across the impulse
   };
 
-  /// `stream` is the thruster's own. The errors of a burn are drawn by its maneuver_id, independently of other burns.
+  /// Makes a thruster; `stream` is the thruster's own. The errors of a burn are drawn by its maneuver_id, independently
+  /// of other burns.
   IdealThruster(const Settings& settings, const engine::RandomStream& stream);
 
-  /// Without errors the executed impulse is the commanded one, bit for bit. Notes: the errors of the burn.
+  /// Executes a burn. Without errors the executed impulse is the commanded one, bit for bit. Notes: the errors of the
+  /// burn.
   Execution execute(const vbar::maneuver_command& command, fsw::GpsTime burn_time, fsw::GpsTime now) override;
 
  private:

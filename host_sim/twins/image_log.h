@@ -15,29 +15,29 @@ namespace vbar::twins {
 /// Writes such a log. Tiles of images of which it was given neither recipe nor recording stay whole.
 class ImageLogWriter {
  public:
-  /// What a tile is replaced by.
+  /// Form of a tile in the log.
   enum class Tiles {
     kAsRuns,
     kWhole,  ///< nothing: recipes are not kept; recordings are, so that an image is in the log before it is used
   };
 
-  /// As PacketLogWriter.
+  /// Creates the log as PacketLogWriter does.
   ImageLogWriter(const std::filesystem::path& file, Tiles tiles, EventCheck check = {})
       : writer_(file, std::move(check)), tiles_(tiles) {}
 
-  /// Before the tiles of its image.
+  /// Writes a recipe, before the tiles of its image.
   void write_recipe(fsw::GpsTime time, const LoggedImage& recipe);
-  /// Before the tiles of its image. It is in the file when the function returns.
+  /// Writes a recording, before the tiles of its image. It is in the file when the function returns.
   void write_recording(fsw::GpsTime time, const LoggedImage& recording);
 
-  /// Packets in order. A tile may be held back until it is known how far its run goes.
+  /// Writes a packet; packets come in order. A tile may be held back until it is known how far its run goes.
   void write(const PacketRecord& record);
 
-  /// At the end of every step, because a run of tiles does not reach beyond one: writes what was held back. All that
-  /// was written outlives the program then. Throws as PacketLogWriter.
+  /// Ends a step; called at the end of every step, because a run of tiles does not reach beyond one. It writes what was
+  /// held back. All that was written outlives the program then. Throws as PacketLogWriter.
   void end_step();
 
-  /// As PacketLogWriter.
+  /// Ends the log as PacketLogWriter does.
   void finish() { writer_.finish(); }
 
  private:

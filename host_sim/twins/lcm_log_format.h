@@ -8,7 +8,7 @@ namespace vbar::twins::lcm_log {
 
 inline constexpr std::uint32_t kSyncWord = 0xEDA1DA01;
 inline constexpr std::size_t kSyncAt = 0;
-inline constexpr std::size_t kNumberAt = 4;  ///< of the event: 8 bytes
+inline constexpr std::size_t kNumberAt = 4;  ///< number of the event: 8 bytes
 inline constexpr std::size_t kTimeAt = 12;   ///< us: 8 bytes
 inline constexpr std::size_t kChannelBytesAt = 20;
 inline constexpr std::size_t kDataBytesAt = 24;

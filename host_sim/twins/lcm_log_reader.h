@@ -1,6 +1,6 @@
 #pragma once
 // Events of a file in LCM's log format, read defensively: every size is checked against the file before memory is
-// allocated for it (lcm_log_format.h).
+// allocated for it.
 
 #include <cstdint>
 #include <filesystem>
@@ -12,14 +12,14 @@
 
 namespace vbar::twins {
 
-/// The file is not a log, or damaged; the message names file and byte offset.
+/// Error: the file is not a log, or damaged; the message names file and byte offset.
 class DamagedLog : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
 struct LoggedEvent {
-  std::uint64_t offset = 0;  ///< of its first byte in the file
+  std::uint64_t offset = 0;  ///< offset of its first byte in the file
   std::int64_t number = 0;
   std::int64_t timestamp = 0;  ///< us
   std::string channel;
@@ -31,14 +31,15 @@ class LcmLogReader {
   /// Throws std::runtime_error that names a file that cannot be read.
   explicit LcmLogReader(const std::filesystem::path& file);
 
-  /// Nothing at the end of the file, or where it ends within an event: then cut_short(). Throws DamagedLog.
+  /// Reads the next event; nothing at the end of the file, or where it ends within an event: then cut_short(). Throws
+  /// DamagedLog.
   [[nodiscard]] std::optional<LoggedEvent> next();
 
-  /// Whether another event may begin after the byte `offset`: its sync word stands there.
+  /// Returns whether another event may begin after the byte `offset`: whether a sync word follows.
   [[nodiscard]] bool has_event_after(std::uint64_t offset);
 
   [[nodiscard]] bool cut_short() const { return cut_short_; }
-  /// Of the first byte that was not read yet.
+  /// Returns the offset of the first byte that was not read yet.
   [[nodiscard]] std::uint64_t offset() const { return offset_; }
   [[nodiscard]] std::uint64_t size() const { return size_; }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Events into a file in LCM's log format, (lcm_log_format.h); lcm-logplayer and lcm_eventlog_read_next_event()
+// Events into a file in LCM's log format; lcm-logplayer and lcm_eventlog_read_next_event()
 // read it.
 
 #include <cstdint>
@@ -16,7 +16,7 @@ class LcmLogWriter {
   /// Creates or truncates `file`. All functions throw std::runtime_error that names it if it cannot be written.
   explicit LcmLogWriter(const std::filesystem::path& file);
 
-  /// `timestamp` in microseconds. Events are numbered from 0 on.
+  /// Writes an event; `timestamp` is in microseconds. Events are numbered from 0 on.
   void write(std::int64_t timestamp, const std::string& channel, std::span<const std::uint8_t> data);
 
   /// Hands all that was written to the operating system.

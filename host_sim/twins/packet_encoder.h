@@ -12,12 +12,13 @@ namespace vbar::twins {
 
 class PacketEncoder {
  public:
-  /// `spacecraft` and `unit` as in fsw/packets/packet.h. One encoder a message kind: sequences count per APID, from
-  /// `sequence_count` (14 bits) on.
+  /// Makes an encoder; `spacecraft` and `unit` as in fsw/packets/packet.h. One encoder a message kind: sequences count
+  /// per APID, from `sequence_count` (14 bits) on.
   PacketEncoder(std::uint8_t spacecraft, std::uint8_t unit, std::uint16_t sequence_count = 0)
       : spacecraft_(spacecraft), unit_(unit), sequence_count_(sequence_count) {}
 
-  /// The next packet. Empty if the message holds a NaN or an infinity; the sequence then has no gap.
+  /// Encodes the next packet. The result is empty if the message holds a NaN or an infinity; the sequence then has no
+  /// gap.
   template <class Message>
   std::optional<Packet> encode(fsw::GpsTime time, const Message& message) {
     fsw::packets::PacketHeader header;

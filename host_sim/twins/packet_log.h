@@ -36,8 +36,8 @@ inline constexpr const char* kEndChannel = "VBAR_END";
 
 /// A packet at the interface of a flight computer.
 struct PacketRecord {
-  std::uint32_t step = 0;  ///< of the flight step that received it (its inputs and its tick) or sent it
-  fsw::GpsTime time;       ///< of that step
+  std::uint32_t step = 0;  ///< number of the flight step that received it (its inputs and its tick) or sent it
+  fsw::GpsTime time;       ///< time of that step
   bool to_flight = false;
   Packet packet;
   /// Packets that are not in the log, in place of `packet`, which is empty then.
@@ -50,13 +50,13 @@ struct LcmEvent {
   std::vector<std::uint8_t> data;
 };
 
-/// The record and, if the packet is whole and holds an LCM message, the message.
+/// Returns the record and, if the packet is whole and holds an LCM message, the message.
 [[nodiscard]] std::vector<LcmEvent> lcm_events_of(const PacketRecord& record);
 
-/// Is given every event of a new log except its end, before it is written. An exception leaves it out.
+/// Receives every event of a new log except its end, before it is written. If it throws, the event is left out.
 using EventCheck = std::function<void(fsw::GpsTime time, const LcmEvent& event)>;
 
-/// An event's time in the log, us: that of LCM.
+/// Returns an event's time in the log, us: that of LCM.
 [[nodiscard]] std::int64_t lcm_timestamp(fsw::GpsTime time);
 
 class LcmLogWriter;
@@ -71,9 +71,10 @@ class PacketLogWriter {
 
   /// Throws std::runtime_error if the file cannot be written.
   void write(const PacketRecord& record);
-  /// The same of a recipe (Measurement::recipe) of this time.
+  /// Writes a recipe (Measurement::recipe) of this time. Throws as write().
   void write_recipe(fsw::GpsTime time, std::vector<std::uint8_t> recipe);
-  /// The same of a recording (Measurement::recording); it is in the file when the function returns.
+  /// Writes a recording (Measurement::recording) of this time, which is in the file when the function returns. Throws
+  /// as write().
   void write_recording(fsw::GpsTime time, std::vector<std::uint8_t> recording);
 
   /// Hands all that was written to the operating system: it outlives the program. Throws as write.
@@ -94,20 +95,20 @@ class PacketLogWriter {
 
 struct LoggedEvent;
 
-/// The record that an event of kPacketChannel or kTilesChannel holds. Throws DamagedLog, which names `file`.
+/// Returns the record that an event of kPacketChannel or kTilesChannel holds. Throws DamagedLog, which names `file`.
 [[nodiscard]] PacketRecord record_of(const LoggedEvent& event, const std::filesystem::path& file);
 
 /// Two consecutive events whose numbers are not consecutive: events between them were removed.
 /// The first event is preceded by event -1.
 struct EventGap {
-  std::uint64_t offset = 0;  ///< of the second in the file
+  std::uint64_t offset = 0;  ///< offset of the second event in the file
   std::int64_t before = 0, after = 0;
 };
 
-/// What a log holds in place of image tiles, in the order of the file and as encoded.
+/// Data that a log holds in place of image tiles, in the order of the file and as encoded.
 struct ImagesOfLog {
   struct Recording {
-    std::uint64_t offset = 0;  ///< of the event in the file
+    std::uint64_t offset = 0;  ///< offset of the event in the file
     std::vector<std::uint8_t> bytes;
   };
   std::filesystem::path file;
@@ -120,12 +121,12 @@ struct PacketLog : ImagesOfLog {
   std::uint64_t bytes = 0;                     ///< size of the file
   bool cut_short = false;                      ///< the file ends within an event, as that of a killed run may
   std::optional<EventGap> gap;                 ///< the first one
-  std::uint64_t events = 0;                    ///< of all channels, the end excepted
+  std::uint64_t events = 0;                    ///< number of events of all channels, the end excepted
   std::optional<std::uint64_t> events_at_end;  ///< as VBAR_END states; none if the log has no end
 };
 
 /// Reads all packets of a log; events of other channels are ignored. Throws std::runtime_error that names a file
-/// that cannot be read, and DamagedLog (lcm_log_reader.h) for one that is not an LCM log or holds a damaged record.
+/// that cannot be read, and DamagedLog (lcm_log.h) for one that is not an LCM log or holds a damaged record.
 [[nodiscard]] PacketLog read_packet_log(const std::filesystem::path& file);
 
 }  // namespace vbar::twins

@@ -42,7 +42,7 @@ struct SpacecraftTruth {
   std::string name;
   fsw::orbit::CartesianState orbit;
   std::optional<truth::AttitudeState> attitude = std::nullopt;  ///< if it has one
-  // For a source that requests them (TruthDetail); otherwise empty.
+  // For a source that requests them (TruthDetail); empty for others.
   std::optional<fsw::Vector3> acceleration_eci = std::nullopt;  ///< the point mass included, m/s^2
   std::optional<fsw::Vector3> angular_acceleration_body =
       std::nullopt;  ///< rate of change of the angular rate in body axes, rad/s^2
@@ -54,7 +54,7 @@ struct TruthSnapshot {
   std::vector<SpacecraftTruth> spacecraft;
   fsw::Matrix3 R_itrf_gcrf = fsw::Matrix3::Identity();  ///< the Earth's true orientation
 
-  /// Null if there is none of that name.
+  /// Returns the spacecraft with a name; null if there is none.
   [[nodiscard]] const SpacecraftTruth* find(std::string_view name) const {
     for (const SpacecraftTruth& candidate : spacecraft)
       if (candidate.name == name) return &candidate;
@@ -75,7 +75,8 @@ class TruthOutlook {
 
   static constexpr fsw::Duration kHorizon = fsw::duration_of_seconds(1);
 
-  /// Accelerations included. Throws std::out_of_range for a time before the present or beyond the horizon.
+  /// Returns the truth at a time, accelerations included. Throws std::out_of_range for a time before the present or
+  /// beyond the horizon.
   [[nodiscard]] virtual TruthSnapshot at(fsw::GpsTime time) = 0;
 };
 
@@ -97,7 +98,7 @@ struct Completion {
   std::vector<Packet> packets;
   std::vector<Note> notes;
   std::string failure = {};  ///< if there are no packets: the reason, one sentence
-  /// As Measurement::recording, of an image that was taken after measure().
+  /// Recording as Measurement::recording, for an image that was taken after measure().
   std::optional<LoggedImage> recording = std::nullopt;
 };
 
@@ -121,7 +122,7 @@ struct Measurement {
   std::string reason;  ///< kFailed: one sentence
 };
 
-/// What befalls a simulated device between two measurements.
+/// Upset of a simulated device between two measurements.
 struct Upset {
   enum class Kind : std::uint8_t {
     kCycleSlip,  ///< carriers slip by `value` whole cycles, undetected by the receiver
@@ -130,8 +131,8 @@ struct Upset {
   };
   Kind kind = Kind::kReset;
   double value = 0.0;
-  /// kCycleSlip: "G05"; "highest", that of the highest elevation at the last epoch; "all", each by another multiple of
-  /// `value`.
+  /// Satellite of kCycleSlip: "G05"; "highest", that of the highest elevation at the last epoch; "all", each by another
+  /// multiple of `value`.
   std::string satellite = {};
 };
 
@@ -144,46 +145,47 @@ class PacketSource {
   PacketSource& operator=(const PacketSource&) = delete;
   virtual ~PacketSource() = default;
 
-  /// Before the run folder exists: a device answers, is homed and calibrated. `first_epoch` is the start of the run.
-  /// Throws std::runtime_error, one sentence, if the run must not start.
+  /// Starts the source before the run folder exists: a device answers, is homed and calibrated. `first_epoch` is the
+  /// start of the run. Throws std::runtime_error, one sentence, if the run must not start.
   virtual void start(fsw::GpsTime first_epoch) { static_cast<void>(first_epoch); }
 
-  /// The run is over, however it ended: motion stops, and what is pending is completed or abandoned without delay.
-  /// Called once after start(), also after one that threw. An exception is reported and has no other effect.
+  /// Stops the source when the run is over, however it ended: motion stops, and what is pending is completed or
+  /// abandoned without delay. Called once after start(), also after one that threw. An exception is reported and has no
+  /// other effect.
   virtual void stop(StopReason reason) { static_cast<void>(reason); }
 
-  /// The first epoch at or after `from` at which it measures; empty after the last one.
+  /// Returns the first epoch at or after `from` at which it measures; empty after the last one.
   [[nodiscard]] virtual std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const = 0;
 
   /// Measures at the epoch of `truth`. Epochs are in order. It should return within a second, since it cannot be
   /// interrupted: longer work is `pending`.
   virtual Measurement measure(const TruthSnapshot& truth) = 0;
 
-  /// A command of the flight software, of any kind and to any device; it takes effect at `effective`, the present or
-  /// later.
+  /// Receives a command of the flight software, of any kind and to any device; it takes effect at `effective`, the
+  /// present or later.
   virtual void command(const fsw::packets::PacketView& packet, fsw::GpsTime effective) {
     static_cast<void>(packet);
     static_cast<void>(effective);
   }
 
-  /// The content that its snapshots need.
+  /// Returns the content that its snapshots need.
   [[nodiscard]] virtual TruthDetail truth_detail() const { return TruthDetail::kStates; }
 
-  /// After start(): the receiver whose bytes reach the flight computer on a line of its own, not in packets of this
-  /// source.
+  /// Returns, after start(), the receiver whose bytes reach the flight computer on a line of its own, not in packets of
+  /// this source.
   [[nodiscard]] virtual std::optional<io::WiredReceiver> wired_receiver() const { return std::nullopt; }
 
-  /// Whether its measurements are evaluated individually, later and by their time (images): observers of the run then
-  /// receive the truth of each.
+  /// Returns whether its measurements are evaluated individually, later and by their time (images): observers of the
+  /// run then receive the truth of each.
   [[nodiscard]] virtual bool truth_is_compared() const { return false; }
 
-  /// Wall-clock time that the simulation waits for pending packets before it ends the run.
+  /// Returns the wall-clock time that the simulation waits for pending packets before it ends the run.
   [[nodiscard]] virtual std::chrono::milliseconds wait_limit() const { return std::chrono::minutes(1); }
 
-  /// Figures so far, for the summary. Must not wait for pending packets.
+  /// Returns the figures so far, for the summary. Must not wait for pending packets.
   [[nodiscard]] virtual std::vector<Note> statistics() const { return {}; }
 
-  /// At the next measurement. False if it cannot happen to this source, or not now.
+  /// Upsets the device at the next measurement. False if it cannot happen to this source, or not now.
   virtual bool upset(const Upset& upset) {
     static_cast<void>(upset);
     return false;
@@ -197,7 +199,7 @@ struct NamedSource {
   std::unique_ptr<PacketSource> packets;
 };
 
-/// The first of start, start + period, ... at or after `from`; period > 0.
+/// Returns the first of start, start + period, ... at or after `from`; period > 0.
 [[nodiscard]] constexpr fsw::GpsTime next_periodic_epoch(fsw::GpsTime start, fsw::Duration period, fsw::GpsTime from) {
   if (from <= start) return start;
   const std::int64_t periods = ((from - start).ns + period.ns - 1) / period.ns;

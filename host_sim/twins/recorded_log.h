@@ -21,22 +21,23 @@ class RecordedLog final : public PacketSource {
   struct Selection {
     std::uint8_t spacecraft = 0;
     std::vector<fsw::packets::Apid> apids;
-    std::optional<std::uint8_t> unit = {};  ///< none: of all
+    std::optional<std::uint8_t> unit = {};  ///< none: packets of all units
   };
 
-  /// `make_tiles` is needed for logs without the pixels of their images. Throws std::runtime_error, as read_packet_log,
-  /// for a log without any such packet, and for one that lacks tiles without `make_tiles`.
+  /// Opens a log. `make_tiles` is needed for logs without the pixels of their images. Throws std::runtime_error, as
+  /// read_packet_log, for a log without any such packet, and for one that lacks tiles without `make_tiles`.
   RecordedLog(const std::filesystem::path& file, const Selection& selection, const MakeTileSource& make_tiles = {});
 
-  /// Time of the next recorded delivery, or of the next exposure of a recorded image: its truth is then recorded.
+  /// Returns the time of the next recorded delivery, or of the next exposure of a recorded image: its truth is then
+  /// recorded.
   [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override;
 
-  /// The packets delivered at the epoch, byte for byte and in the recorded order, past any simulated link. kReady with
-  /// none if none were. At an exposure also its recipe and its recording, for the log of this run. Throws as
-  /// TileSource.
+  /// Returns the packets delivered at the epoch, byte for byte and in the recorded order, past any simulated link.
+  /// kReady with none if none were. At an exposure also its recipe and its recording, for the log of this run. Throws
+  /// as TileSource.
   Measurement measure(const TruthSnapshot& truth) override;
 
-  /// Of a camera.
+  /// True for the log of a camera.
   [[nodiscard]] bool truth_is_compared() const override { return plays_images_; }
 
  private:
@@ -49,7 +50,7 @@ class RecordedLog final : public PacketSource {
   [[nodiscard]] std::vector<Delivery>::const_iterator first_at_or_after(fsw::GpsTime time) const;
 
   std::vector<Delivery> deliveries_;   ///< in order of time
-  std::set<fsw::GpsTime> epochs_;      ///< of deliveries and exposures
+  std::set<fsw::GpsTime> epochs_;      ///< epochs of deliveries and exposures
   std::unique_ptr<TileSource> tiles_;  ///< null: the log holds all tiles
   bool plays_images_ = false;
 };

@@ -8,7 +8,7 @@ namespace {
 constexpr std::uint64_t kFnvOffset = 0xcbf29ce484222325U;
 constexpr std::uint64_t kFnvPrime = 0x00000100000001b3U;
 
-/// A packet ends in its CRC, which stands for all of it.
+/// Adds a packet by its CRC, in which the packet ends.
 std::uint64_t add_to_checksum(std::uint64_t checksum, const Packet& packet) {
   for (const std::uint8_t byte : std::span(packet).last(fsw::packets::kPacketCrcBytes))
     checksum = (checksum ^ byte) * kFnvPrime;

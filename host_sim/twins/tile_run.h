@@ -21,13 +21,13 @@ struct TileRun {
   friend bool operator==(const TileRun&, const TileRun&) = default;
 };
 
-/// The run of this packet alone; empty if it is not an image tile.
+/// Returns the run of this packet alone; empty if it is not an image tile.
 [[nodiscard]] std::optional<TileRun> tile_run_of(const Packet& packet);
 
 /// Appends the run of the next tile; false, without a change, if it is not the next one. `packet` is the tile.
 bool extend(TileRun& run, const TileRun& next, const Packet& packet);
 
-/// The checksum of a run of these packets, each a whole space packet.
+/// Returns the checksum of a run of these packets, each a whole space packet.
 [[nodiscard]] std::uint64_t checksum_of(std::span<const Packet> packets);
 
 }  // namespace vbar::twins

@@ -14,18 +14,18 @@ class TrueWorld {
   TrueWorld& operator=(const TrueWorld&) = delete;
   virtual ~TrueWorld() = default;
 
-  /// Not back in time.
+  /// Advances the world, not back in time.
   virtual void advance_to(fsw::GpsTime time) = 0;
-  /// At the current time.
+  /// Returns the truth at the current time.
   [[nodiscard]] virtual TruthSnapshot snapshot(TruthDetail detail) = 0;
 
   // The spacecraft that flies.
   /// Adds a velocity, m/s in its own RTN, at the current time.
   virtual void apply_impulse_rtn(const fsw::Vector3& dv_rtn) = 0;
-  /// Turns it to a direction in its own RTN, a unit vector and its rate (1/s) at `time`, if its attitude is commanded.
+  /// Points it to a direction in its own RTN, a unit vector and its rate (1/s) at `time`, if its attitude is commanded.
   virtual void point(fsw::GpsTime time, const fsw::Vector3& boresight_rtn, const fsw::Vector3& boresight_rate_rtn) = 0;
 
-  /// Wall-clock time spent in it so far, s.
+  /// Returns the wall-clock time spent in it so far, s.
   [[nodiscard]] virtual double wall_s() const = 0;
 };
 

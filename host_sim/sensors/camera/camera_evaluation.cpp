@@ -16,7 +16,7 @@
 namespace vbar::sensors {
 namespace {
 
-/// What a step said of an image, in two packets.
+/// Telemetry of a step on an image, in two packets.
 struct ImageTelemetry {
   fsw::GpsTime exposure;
   std::optional<telemetry_image> image;
@@ -114,7 +114,7 @@ class CameraEvaluation final : public Evaluation {
 
 std::unique_ptr<Evaluation> evaluate_camera(const mission::Sensor& sensor, const EvaluationContext& context) {
   const auto& camera = settings_of<CameraSensor>(sensor);
-  if (!camera.is_used()) return nullptr;  // the flight software says nothing of its images
+  if (!camera.is_used()) return nullptr;  // no telemetry reports its images
   return std::make_unique<CameraEvaluation>(sensor, camera, context);
 }
 

@@ -21,7 +21,7 @@ using mission::Sensor;
 using mission::Spacecraft;
 using mission::TableReader;
 
-/// The spacecraft can be seen, and navigation has what it needs to know of it.
+/// Checks that the spacecraft can be seen, and that the mission states what navigation needs to know about it.
 void check_target(const TableReader& section, const CameraSensor& camera, const Mission& mission) {
   const Spacecraft& target = *mission.find_spacecraft(camera.observed);
   if (target.model.empty() || !target.attitude)
@@ -34,8 +34,9 @@ void check_target(const TableReader& section, const CameraSensor& camera, const 
                    "with navigation = \"pose\": a spacecraft that tumbles, by laws that are known on board");
 }
 
-/// The weights of a network are part of the flight software: vbar's own knows Tango, a library vbar_gnc_<model> of
-/// boards/targets the model of its name. What another library or image knows is not known here.
+/// Checks that the flight software has a network for the model. The weights of a network are part of the flight
+/// software: vbar's own are those of Tango, a library vbar_gnc_<model> of boards/targets has those of the model of its
+/// name. The networks of other libraries and images are not known here.
 void check_network(const TableReader& section, const mission::FlightComputer& computer, const std::string& model) {
   constexpr std::string_view kOfOtherTargets = "vbar_gnc_";
   const bool is_own =

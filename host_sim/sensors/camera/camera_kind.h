@@ -13,12 +13,13 @@
 
 namespace vbar::sensors {
 
-/// `observed` is the spacecraft that it navigates to.
+/// Settings of a camera; `observed` is the spacecraft that it navigates to.
 struct CameraSensor : mission::SensorSettings {
   std::string camera;  ///< its file as the mission names it, which `settings` began with
   twins::camera::CameraSettings settings;
   engine::Cadence images{fsw::GpsTime{}, fsw::duration_of_seconds(60)};  ///< middles of the exposures
-  /// Of images for keypoints; those for bearings have the exposure of `settings`. The flight software commands which.
+  /// Exposure of images for keypoints; images for bearings have the exposure of `settings`. The flight software
+  /// commands which.
   double keypoint_exposure_s = 0.0;
   fsw::Duration readout;  ///< from the middle of an exposure until the image leaves the camera
   Eigen::Quaterniond q_camera_body = Eigen::Quaterniond::Identity();  ///< camera axes: z boresight, x right, y down
@@ -26,24 +27,24 @@ struct CameraSensor : mission::SensorSettings {
 
   [[nodiscard]] bool has_use(std::int32_t use) const { return (navigation & use) != 0; }
   [[nodiscard]] bool is_used() const { return navigation != 0; }
-  /// Bearings while the target is a point, keypoints once it is resolved.
+  /// Whether navigation uses its images for bearings while the target is a point, keypoints once it is resolved.
   [[nodiscard]] bool changes_use() const { return has_use(kBearings) && has_use(kKeypoints); }
 
   static constexpr std::int32_t kBearings = vbar::navigation_configuration::kUseBearings;
   static constexpr std::int32_t kKeypoints = vbar::navigation_configuration::kUseKeypoints;
 };
 
-/// The camera of that unit whose images navigation uses, and the first with that use (CameraSensor::kBearings,
-/// kKeypoints); null if there is none.
+/// Returns the camera of that unit whose images navigation uses, and the first one with that use
+/// (CameraSensor::kBearings, kKeypoints); null if there is none.
 [[nodiscard]] const CameraSensor* navigation_camera(const mission::Spacecraft& carrier, std::uint8_t unit = 0);
 [[nodiscard]] const CameraSensor* first_camera_for(std::int32_t use, const mission::Spacecraft& carrier);
 
-/// The unit in packet headers: cameras whose images navigation uses come first, in the order of the mission; the flight
-/// software does not know the others, from packets::kCameras on. By the name of the sensor: its settings may be those
-/// of a calibrated copy.
+/// Returns the unit in packet headers. Cameras whose images navigation uses come first, in the order of the mission;
+/// the flight software does not know the others, from packets::kCameras on. By the name of the sensor: its settings may
+/// be those of a calibrated copy.
 [[nodiscard]] std::uint8_t camera_unit(const mission::Sensor& sensor, const mission::Spacecraft& carrier);
 
-/// [navigation.angles_only] and [navigation.pose]: what does not depend on camera and target.
+/// Settings of [navigation.angles_only] and [navigation.pose] that do not depend on camera and target.
 struct CameraShared : mission::SharedSettings {
   vbar::angles_only_configuration angles_only{};
   vbar::pose_configuration pose{};
@@ -55,21 +56,20 @@ extern const SensorKind kCamera;
 [[nodiscard]] std::unique_ptr<Evaluation> evaluate_camera(const mission::Sensor& sensor,
                                                           const EvaluationContext& context);
 
-// In read_camera.cpp and read_camera_navigation.cpp.
+// In camera_configuration.cpp.
 std::shared_ptr<const mission::SensorSettings> read_camera(const mission::TableReader& section,
                                                            const mission::SensorContext& context);
 std::shared_ptr<const mission::SharedSettings> read_camera_shared(const mission::TableReader& document,
                                                                   const mission::Mission& mission);
 
-// In camera_telecommands.cpp.
 void add_camera_telecommands(const mission::Sensor& sensor, const TelecommandContext& context,
                              Telecommands& telecommands);
 
-/// The camera as calibrated on the ground: without error.
+/// Returns the camera as calibrated on the ground: without error.
 [[nodiscard]] vbar::camera_configuration camera_configuration_of(const CameraSensor& camera);
 
-/// The target of the camera as the ground knows it: keypoints of its model, inertia of its body. Throws MissionError
-/// for files that cannot be read.
+/// Returns the target of the camera as configured on the ground: keypoints of its model, inertia of its body. Throws
+/// MissionError for files that cannot be read.
 [[nodiscard]] vbar::target_model target_model_of(const mission::Mission& mission, const CameraSensor& camera,
                                                  const std::filesystem::path& data_directory);
 

@@ -11,22 +11,23 @@
 
 namespace vbar::sensors {
 
-/// What angles-only navigation said of an image, and what was true at its exposure (images.csv, only if a run has such
+/// Telemetry of angles-only navigation on an image, and the truth at its exposure (images.csv, only if a run has such
 /// navigation).
 struct ImageRow : telemetry_image {
   ImageRow() : telemetry_image{} {}
   double time_s = 0.0;       ///< middle of the exposure, since the mission's epoch
-  double step_time_s = 0.0;  ///< of the step whose telemetry reported it
+  double step_time_s = 0.0;  ///< time of the step whose telemetry reported it
   // The truth. Errors are estimated less true; absent where the flight software gave nothing.
-  int true_object = -1;  ///< the object that is really the target; -1: none is, or nobody can tell
+  int true_object = -1;  ///< index of the object that is the target; -1: none is, or it is unknown
   std::string chosen;    ///< the spacecraft that the choice really is, "nothing" if none; empty without a choice
   std::optional<double> range_m, sunlit;
-  std::optional<double> bearing_error_x_arcsec, bearing_error_y_arcsec;            ///< against the centre of mass
-  std::optional<double> attitude_error_across_arcsec, attitude_error_roll_arcsec;  ///< of the boresight, and about it
-  std::optional<double> nees;  ///< of the osculating ROE, six degrees of freedom; of images that the filter used
+  std::optional<double> bearing_error_x_arcsec, bearing_error_y_arcsec;  ///< against the centre of mass
+  std::optional<double> attitude_error_across_arcsec,
+      attitude_error_roll_arcsec;  ///< errors of the boresight, and about it
+  std::optional<double> nees;  ///< NEES of the osculating ROE, six degrees of freedom; of images that the filter used
 };
 
-/// What the flight software took an object of an image for (objects.csv).
+/// Kind that the flight software assigned to an object of an image (objects.csv).
 struct ObjectRow {
   double time_s = 0.0;
   std::int32_t image = 0;
@@ -36,19 +37,20 @@ struct ObjectRow {
   float x_px = 0.0F, y_px = 0.0F;  ///< on the detector
 };
 
-/// What navigation by the pose network said of an image, and what was true at its exposure (poses.csv, only if a run
-/// has such navigation). The keypoints are rows of their own.
+/// Telemetry of navigation by the pose network on an image, and the truth at its exposure (poses.csv, only if a run has
+/// such navigation). The keypoints are rows of their own.
 struct PoseRow : telemetry_pose {
   PoseRow() : telemetry_pose{} {}
   double time_s = 0.0;       ///< middle of the exposure, since the mission's epoch
-  double step_time_s = 0.0;  ///< of the step whose telemetry reported it
+  double step_time_s = 0.0;  ///< time of the step whose telemetry reported it
   // The truth. Errors are estimated less true; absent where the flight software gave nothing.
   std::optional<double> range_m, sunlit;
   std::optional<double> pnp_error_x_m, pnp_error_y_m, pnp_error_z_m, pnp_error_deg;        ///< in camera axes
   std::optional<double> attitude_error_deg;                                                ///< in all
   std::optional<double> attitude_error_x_deg, attitude_error_y_deg, attitude_error_z_deg;  ///< about body axes
   std::optional<double> rate_error_radps;
-  std::optional<double> nees, attitude_nees;  ///< of osculating ROE, of turn and rate: six degrees of freedom each
+  std::optional<double> nees,
+      attitude_nees;  ///< NEES of osculating ROE, of attitude and rate: six degrees of freedom each
 };
 
 /// A keypoint of such an image (keypoints.csv).

@@ -74,7 +74,7 @@ void GalleryKeeper::on_inputs(GpsTime now, std::span<const twins::Packet> inputs
     if (!packet.ok()) continue;
     const auto tile = fsw::packets::decode<image_tile>(packet.value());
     if (!tile.ok()) continue;
-    // What the assembly refuses, the flight software refuses too, and says so.
+    // The flight software rejects what this assembly rejects, and reports it.
     static_cast<void>(assembly_->take(packet.value().header.time, packet.value().header.unit, tile.value()));
   }
 }
@@ -86,7 +86,7 @@ void GalleryKeeper::on_image(const ImageFindings& found, std::vector<report::Gal
   if (!is_here) return;
   if (!has_bearing_ && has_bearing(found.row)) {
     has_bearing_ = true;
-    best_.reset();  // of the same moment, without a bearing
+    best_.reset();  // candidate of the same moment, without a bearing
     gallery.push_back(picture(candidate(found, found.exposure)));
     return;
   }

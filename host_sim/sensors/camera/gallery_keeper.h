@@ -4,7 +4,7 @@
 // Which ones is known beforehand from the times of exposure, so that the pixels of all others need never be looked at:
 // the first image that has a bearing, and the last one before each waypoint and before the end of the run. For these
 // the last images before that time are looked at, and the last one with a bearing is taken, or the last one if none
-// has, because the target spends a part of each orbit in the dark.
+// has, because the target spends a part of each orbit in eclipse.
 
 #include <memory>
 #include <optional>
@@ -22,11 +22,11 @@
 
 namespace vbar::sensors {
 
-/// What the flight software said of an image (telemetry_image, telemetry_objects).
+/// Telemetry of the flight software on an image (telemetry_image, telemetry_objects).
 struct ImageFindings {
   fsw::GpsTime exposure;
   ImageRow row;
-  const telemetry_objects* objects = nullptr;   ///< null if it said nothing of them
+  const telemetry_objects* objects = nullptr;   ///< null if telemetry did not report them
   const twins::TruthSnapshot* truth = nullptr;  ///< at the exposure, if it is known
 };
 
@@ -39,11 +39,11 @@ class GalleryKeeper {
   GalleryKeeper(const mission::Mission& mission, const mission::Spacecraft& servicer, TakeTwinImage take_twin = {},
                 std::uint8_t unit = 0);
 
-  /// The packets that the flight software got with the step at `now`: tiles among them are assembled if they may be
-  /// wanted. One image is kept, as in the flight software.
+  /// Receives the packets that the flight software got with the step at `now`; tiles among them are assembled if they
+  /// may be wanted. One image is kept, as in the flight software.
   void on_inputs(fsw::GpsTime now, std::span<const twins::Packet> inputs);
 
-  /// After on_inputs() of the same step. Images come in order of time.
+  /// Receives the findings of an image, after on_inputs() of the same step. Images come in order of time.
   void on_image(const ImageFindings& found, std::vector<report::GalleryImage>& gallery);
 
   /// Puts what is still kept into the gallery, at the end of the run.
@@ -61,7 +61,7 @@ class GalleryKeeper {
   };
 
   [[nodiscard]] bool may_be_wanted(fsw::GpsTime now) const;
-  /// The first one at or after an exposure, if the exposure is among the last before it.
+  /// Returns the first moment at or after an exposure, if the exposure is among the last before it.
   [[nodiscard]] std::optional<fsw::GpsTime> moment_of(fsw::GpsTime exposure) const;
   [[nodiscard]] Candidate candidate(const ImageFindings& found, fsw::GpsTime moment) const;
   [[nodiscard]] report::GalleryImage picture(const Candidate& candidate) const;

@@ -1,6 +1,6 @@
 #pragma once
-// What was true of an image that flight software says it has looked at: where the target really was, and how far off
-// bearing, attitude and estimate are.
+// The truth of an image that the flight software has processed: the place of the target, and the errors of bearing,
+// attitude and estimate.
 
 #include <optional>
 
@@ -12,10 +12,10 @@
 
 namespace vbar::sensors {
 
-/// Fills the true part of `row` (range, errors, which object and which spacecraft the choice really is, NEES) from the
-/// truth at the exposure. `servicer` and what it observes must be in the truth; without that, or without an attitude,
-/// `row` stays as it is. `known`: the camera as the ground knows it; that of a testbed is another than the mission's.
-/// `objects`: of the same image, null if they were not told.
+/// Fills the true part of `row` (range, errors, the object that is the target, the spacecraft that was chosen, NEES)
+/// from the truth at the exposure. The truth must hold `servicer` and the spacecraft that it observes; without them, or
+/// without an attitude, `row` stays as it is. `known`: the camera as calibrated on the ground; that of a testbed is
+/// another than the mission's. `objects`: those of the same image, null if telemetry did not report them.
 void add_truth(ImageRow& row, const telemetry_image& image, const telemetry_objects* objects, const CameraSensor& known,
                const mission::Spacecraft& servicer, const twins::TruthSnapshot& truth);
 

@@ -12,10 +12,10 @@ namespace vbar::sensors {
 
 class KeptTruth {
  public:
-  /// Once for each image: two cameras may expose at the same time.
+  /// Keeps the truth of an exposure, once for each image: two cameras may expose at the same time.
   void keep(const twins::TruthSnapshot& truth) { kept_.emplace(truth.time, truth); }
 
-  /// The truth of an exposure, which is then released. None if there is none: counted.
+  /// Returns the truth of an exposure and releases it. If there is none, the exposure is counted and the result empty.
   std::optional<twins::TruthSnapshot> take(fsw::GpsTime exposure) {
     auto node = kept_.extract(exposure);
     if (node) return std::move(node.mapped());
@@ -23,7 +23,7 @@ class KeptTruth {
     return std::nullopt;
   }
 
-  /// Images whose truth was asked for and not there.
+  /// Returns the number of images whose truth was asked for and missing.
   [[nodiscard]] int without_truth() const { return without_truth_; }
   [[nodiscard]] std::size_t size() const { return kept_.size(); }
 

@@ -1,5 +1,6 @@
 #pragma once
-// A camera as the ground knows it: as the mission has it or, of a testbed that calibrates its camera, as calibrated.
+// A camera as calibrated on the ground: the mission's camera or, for a testbed that calibrates its camera, the
+// calibrated one.
 
 #include <filesystem>
 #include <optional>

@@ -95,7 +95,7 @@ std::unique_ptr<twins::PacketSource> make_camera(const Mission& mission, const S
   twins::camera::CameraSensor::Settings settings;
   settings.image = image_settings(mission, servicer, sensor);
   settings.mount = mount_of(mission, servicer, camera, data_directory);
-  // The first image is taken one period after the first step, which tells the platform where to look.
+  // The first image is taken one period after the first step, which commands the pointing of the platform.
   settings.images = camera.images;
   settings.readout = camera.readout;
   if (camera.changes_use()) settings.first_exposure_s = camera.settings.exposure_s;

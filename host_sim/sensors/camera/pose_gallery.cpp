@@ -45,7 +45,7 @@ void PoseGallery::on_inputs(fsw::GpsTime now, std::span<const twins::Packet> inp
     if (!packet.ok()) continue;
     const auto tile = fsw::packets::decode<image_tile>(packet.value());
     if (!tile.ok()) continue;
-    // What the assembly refuses, the flight software refuses too, and says so.
+    // The flight software rejects what this assembly rejects, and reports it.
     static_cast<void>(work_->assembly.take(packet.value().header.time, packet.value().header.unit, tile.value()));
   }
 }

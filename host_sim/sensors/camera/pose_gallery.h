@@ -23,15 +23,15 @@ class PoseGallery {
   /// Keeps nothing unless the camera of that unit navigates by poses.
   PoseGallery(const mission::Mission& mission, const mission::Spacecraft& servicer, std::uint8_t unit = 0);
 
-  /// The packets that the flight software got with the step at `now`.
+  /// Receives the packets that the flight software got with the step at `now`.
   void on_inputs(fsw::GpsTime now, std::span<const twins::Packet> inputs);
 
-  /// After on_inputs() of the same step: what the flight software said of an image, and its row.
+  /// Receives the telemetry of an image and its row, after on_inputs() of the same step.
   void on_pose(fsw::GpsTime exposure, const telemetry_pose& pose, const PoseRow& row,
                std::vector<report::GalleryImage>& gallery);
 
  private:
-  /// Large, and only of use where there is a pose network.
+  /// Assembly and network, which are large and only of use where there is a pose network.
   struct Work {
     fsw::imaging::ImageAssembly assembly;
     fsw::network::KeypointNetwork network;

@@ -11,14 +11,15 @@
 
 namespace vbar::sensors {
 
-/// The crop is enlarged to this width and height, and stands right of the image.
+/// The crop is enlarged to this width and height, and is placed right of the image.
 inline constexpr int kCropPicturePx = 512;
 [[nodiscard]] inline int crop_left(int image_width) {
   constexpr int kGap = 8;
   return image_width + kGap;
 }
 
-/// A PNG; noise is black in it. Without heatmaps if `network` has no weights, without a crop if it cannot be cut out.
+/// Returns a PNG in which noise is black. Without heatmaps if `network` has no weights, without a crop if it cannot be
+/// cut out.
 [[nodiscard]] std::vector<std::uint8_t> pose_picture(const fsw::imaging::ImageView& image, const telemetry_pose& pose,
                                                      double dark_level_dn, double noise_dn,
                                                      fsw::network::KeypointNetwork& network);

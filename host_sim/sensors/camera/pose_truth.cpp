@@ -23,7 +23,7 @@ Quaterniond quaternion(const double (&q)[4]) {
   return Quaterniond(q[0], q[1], q[2], q[3]).normalized();
 }
 
-/// The small turn from one attitude to the other, in the axes of `from`'s right-hand frame: to = from * exp(turn).
+/// Rotation vector from one attitude to the other, in the axes of `from`'s right-hand frame: to = from * exp(turn).
 Vector3 turn_between(const Quaterniond& from, const Quaterniond& to) {
   const Eigen::AngleAxisd turn(from.conjugate() * to);
   const double angle = turn.angle() > M_PI ? turn.angle() - 2.0 * M_PI : turn.angle();

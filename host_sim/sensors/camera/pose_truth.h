@@ -1,5 +1,5 @@
 #pragma once
-// What the flight software said of a pose and its keypoints, and what was true of them.
+// Telemetry of a pose and its keypoints, and their truth.
 
 #include <vector>
 
@@ -11,7 +11,7 @@
 
 namespace vbar::sensors {
 
-/// Eleven rows, nothing of the truth yet.
+/// Appends eleven rows, without the truth.
 void append_keypoints(double exposure_s, const telemetry_pose& pose, std::vector<KeypointRow>& rows);
 
 /// Sets what was true at the exposure beside the row and the last eleven of `keypoints`, the row's own.

@@ -42,7 +42,7 @@ Fact nis_fact(const RunRecord& record) {
                           count > 0 ? std::optional(sum / static_cast<double>(count)) : std::nullopt, 2.0, count);
 }
 
-/// Of the images that had an attitude.
+/// Number of identified stars of the images that had an attitude.
 std::string stars_text(const RunRecord& record) {
   std::vector<int> stars;
   for (const ImageRow& row : record.tables.rows<ImageRow>())

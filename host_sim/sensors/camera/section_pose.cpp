@@ -43,7 +43,7 @@ Cells papers_row(const std::vector<WaypointRow>& waypoints, const char* loop, co
   return cells;
 }
 
-/// The paper's figures stand below those of a run that meets its waypoints.
+/// The paper's figures are printed below those of a run that meets its waypoints.
 std::string performance_table(const RunRecord& record) {
   const std::vector<WaypointRow> waypoints = reached_waypoints(record);
   std::vector<Column> columns{{"", false}, {"", false}};
@@ -60,7 +60,7 @@ std::string performance_table(const RunRecord& record) {
     rows.push_back(papers_row(waypoints, kPaperSoftware, paper2::kSoftware, &paper2::Loops::software, is_navigation));
     rows.push_back(papers_row(waypoints, kPaperHardware, paper2::kHardware, &paper2::Loops::hardware, is_navigation));
   }
-  /// A figure of the whole run below which those of the paper stand.
+  /// A figure of the whole run, with those of the paper below it.
   const auto totals = [&](const char* name, const std::string& run, const auto& of_paper) {
     const auto total = [&](const char* first, const char* of, const std::string& value) {
       Cells& cells = rows.emplace_back(Cells{first, of});
@@ -130,7 +130,7 @@ std::string facts(const RunRecord& record) {
 
 /// Images by outcome.
 std::string outcome_table(const RunRecord& record) {
-  std::map<int, std::array<int, 4>> counts;  // of a status: all, rejected, used, kept for the initialisation
+  std::map<int, std::array<int, 4>> counts;  // counts of a status: all, rejected, used, kept for the initialisation
   for (const PoseRow& row : record.tables.rows<PoseRow>()) {
     std::array<int, 4>& count = counts[row.status];
     ++count[0];
@@ -147,7 +147,7 @@ double at_share(std::vector<double>& sorted, double share) {
   return sorted[std::min(sorted.size() - 1, static_cast<std::size_t>(share * static_cast<double>(sorted.size())))];
 }
 
-/// Of each keypoint: shares of the images, errors.
+/// Table of the keypoints: shares of the images, errors.
 std::string keypoint_table(const RunRecord& record) {
   struct Of {
     int images = 0, usable = 0, used = 0, refused = 0;
@@ -227,7 +227,7 @@ std::vector<Point> line_of(const RunRecord& record, const Value& value) {
   return points;
 }
 
-/// Of the turn about a body axis, as the filter claims; rad.
+/// Standard deviation of the rotation about a body axis, as the filter states it; rad.
 double attitude_sigma(const PoseRow& row, std::size_t axis) {
   constexpr std::array<std::size_t, 3> kDiagonal{0, 2, 5};
   return std::sqrt(std::max(row.covariance_attitude[kDiagonal[axis]], 0.0));
@@ -314,7 +314,7 @@ Plot range_plot(const RunRecord& record, const View& view) {
 
 Plot keypoint_count_plot(const RunRecord& record, const View& view) {
   Plot plot = empty_plot(record, view, "Keypoints per image", "keypoints", Unit::kNone);
-  std::map<std::int32_t, std::pair<int, int>> counts;  // of an image: usable, used
+  std::map<std::int32_t, std::pair<int, int>> counts;  // counts of an image: usable, used
   for (const KeypointRow& row : record.tables.rows<KeypointRow>()) {
     counts[row.image].first += row.fate != telemetry_pose::kKeypointUnusable ? 1 : 0;
     counts[row.image].second += row.fate == telemetry_pose::kKeypointUsed ? 1 : 0;

@@ -40,7 +40,7 @@ void summarise_angles_only(const RunRecord& record, Summary& summary) {
   for (const ImageRow& row : record.tables.rows<ImageRow>()) {
     if (row.attitude_error_across_arcsec) across.push_back(*row.attitude_error_across_arcsec);
     if (row.nees) all_nees.push_back(*row.nees);
-    // A wrong choice is counted as one; its bearing says nothing of the target's.
+    // A wrong choice is counted as one; its bearing is not that of the target.
     if (!row.bearing_error_x_arcsec || row.chosen != summary.target || !(row.range_m > kUnresolvedRange_m)) continue;
     x.push_back(*row.bearing_error_x_arcsec);
     y.push_back(row.bearing_error_y_arcsec.value_or(0.0));
@@ -62,7 +62,7 @@ double chi_square(const KeypointRow& row) {
   return (yy * ex * ex - 2.0 * xy * ex * ey + xx * ey * ey) / (xx * yy - xy * xy);
 }
 
-/// Position errors at the steps that told of an image of a lit target.
+/// Position errors at the steps whose telemetry reported an image of a lit target.
 std::vector<double> lit_errors(const RunRecord& record) {
   std::vector<double> errors;
   auto image = record.tables.rows<PoseRow>().begin();

@@ -13,8 +13,8 @@
 
 namespace vbar::sensors {
 
-/// Of the sphere about the centre of mass of Tango, the spacecraft that cameras see here, that holds its body and
-/// antennas.
+/// Radius of the sphere about the centre of mass of Tango, the spacecraft that cameras see here, that holds its body
+/// and antennas.
 inline constexpr double kSpacecraftRadius_m = 0.73;
 
 /// A camera in orbit at the middle of an exposure.
@@ -27,22 +27,23 @@ struct TrueCamera {
   }
 };
 
-/// `servicer` must have an attitude.
+/// Returns the true camera at an exposure. `servicer` must have an attitude.
 [[nodiscard]] TrueCamera true_camera(const CameraSensor& camera, const twins::SpacecraftTruth& servicer);
 
-/// Pinhole and Brown-Conrady distortion, forwards (Brown 1966); none behind the camera.
+/// Returns the image point of a direction by pinhole and Brown-Conrady distortion, forwards (Brown 1966); none behind
+/// the camera.
 [[nodiscard]] std::optional<Eigen::Vector2d> pixel_of(const twins::camera::CameraSettings& settings,
                                                       const fsw::Vector3& los_camera);
 
-/// The symmetric matrix whose lower triangle by rows a packet carries.
+/// Returns the symmetric matrix whose lower triangle by rows a packet carries.
 [[nodiscard]] fsw::Matrix6 symmetric(const double (&lower_triangle)[21]);
 
-/// Error' covariance^-1 error; none for a covariance that is not positive definite.
+/// Returns Error' covariance^-1 error; none for a covariance that is not positive definite.
 [[nodiscard]] std::optional<double> normalised_square(const fsw::Vector6& error, const fsw::Matrix6& covariance);
 
-/// Normalised estimation error squared of osculating ROE times the servicer's osculating semi-major axis (m), six
-/// degrees of freedom. (Another semi-major axis, such as the mission's mean one, differs by up to 10 km: an error of a
-/// thousandth of the elements, which exceeds the standard deviations of navigation.)
+/// Returns the normalised estimation error squared of osculating ROE times the servicer's osculating semi-major axis
+/// (m), six degrees of freedom. (Another semi-major axis, such as the mission's mean one, differs by up to 10 km: an
+/// error of a thousandth of the elements, which exceeds the standard deviations of navigation.)
 [[nodiscard]] std::optional<double> nees_of_roe(const double (&a_roe_m)[6], const double (&covariance_m2)[21],
                                                 const fsw::orbit::CartesianState& servicer,
                                                 const fsw::orbit::CartesianState& target);

@@ -20,7 +20,7 @@ namespace vbar::sensors {
 namespace {
 
 constexpr std::uint16_t kMissing = 0xFFFF;
-constexpr double kSigmaOfMad = 1.4826;  // of a normal distribution
+constexpr double kSigmaOfMad = 1.4826;  // factor of a normal distribution
 constexpr double kShownFrom_sigma = 5.0;
 constexpr int kHalfWindow = 4;  // px, of a centroid
 
@@ -51,7 +51,8 @@ Noise noise_of(const ImagePair& pair) {
   return {middle, std::max(kSigmaOfMad * median(std::move(all)), 0.5)};
 }
 
-/// Of the light above the median of a window about a place; empty at the edge, without light and with missing pixels.
+/// Centroid of the light above the median of a window about a place; empty at the edge, without light and with missing
+/// pixels.
 std::optional<Eigen::Vector2d> centroid(const ImagePair& pair, std::span<const std::uint16_t> dn, double x_px,
                                         double y_px) {
   const int x0 = static_cast<int>(std::lround(x_px)) - pair.origin_x_px;
@@ -111,7 +112,7 @@ std::vector<std::uint8_t> difference_png(const ImagePair& pair) {
       const double difference = static_cast<double>(pair.testbed[k]) - pair.twin[k] - noise.median_dn;
       const double size = std::abs(difference) / noise.sigma_dn;
       if (size < kShownFrom_sigma) continue;
-      // Logarithmic: from a third of the brightness to all of it at a hundred times the limit.
+      // The scale is logarithmic: from a third of the brightness to full brightness at a hundred times the limit.
       const double share = std::min(1.0 / 3.0 + std::log10(size / kShownFrom_sigma) / 3.0, 1.0);
       const auto strong = static_cast<std::uint8_t>(std::lround(255.0 * share));
       const auto weak = static_cast<std::uint8_t>(strong / 3);

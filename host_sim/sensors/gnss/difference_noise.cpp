@@ -212,7 +212,7 @@ void DifferenceNoise::add(const ResidualEpoch& epoch) {
 void DifferenceNoise::add_wander(const Sums& phase, SignalNoiseRow& row) const {
   const std::optional<double> near = phase.lagged[0].correlation(), far = phase.lagged[1].correlation();
   if (!near || !far) return;
-  // Of white noise a correlation has a standard deviation of 1/sqrt(pairs).
+  // A correlation of white noise has a standard deviation of 1/sqrt(pairs).
   constexpr double kSignificant = 4.0;
   const auto is_significant = [](double correlation, const Lagged& lagged) {
     return correlation > kSignificant / std::sqrt(static_cast<double>(lagged.pairs));

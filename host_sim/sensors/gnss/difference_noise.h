@@ -23,8 +23,9 @@ struct SignalResidual {
   fsw::gnss::SatelliteId satellite;
   fsw::gnss::Signal signal = fsw::gnss::Signal::kGpsL1;
   Residual phase, code;
-  double phase_sigma_m = 0.0, code_sigma_m = 0.0;  ///< of the difference, as the receivers state them
-  double lock_s = 0.0;                             ///< shorter of the two receivers'
+  double phase_sigma_m = 0.0,
+         code_sigma_m = 0.0;  ///< standard deviations of the difference, as the receivers state them
+  double lock_s = 0.0;        ///< shorter of the two receivers'
 };
 
 struct ResidualEpoch {
@@ -34,20 +35,20 @@ struct ResidualEpoch {
   fsw::Vector3 baseline_correction_m = fsw::Vector3::Zero();  ///< estimated less given
 };
 
-/// Of one epoch: phases less geometry are integers, the offset of their signal (receiver clocks, the reference), and a
-/// small error of the baseline, which are estimated by least squares; code takes the same baseline. `servicer_eci`:
-/// antenna, to some metres; `baseline_eci`: between the antennas at the receivers' own instants, to a centimetre or
-/// two. Empty if there are too few phases.
+/// Returns the residuals of one epoch. Phases less geometry are integers, the offset of their signal (receiver clocks,
+/// the reference), and a small error of the baseline, which are estimated by least squares; code takes the same
+/// baseline. `servicer_eci`: antenna, to some metres; `baseline_eci`: between the antennas at the receivers' own
+/// instants, to a centimetre or two. The result is empty if there are too few phases.
 [[nodiscard]] std::optional<ResidualEpoch> residuals_of(const fsw::navigation::DifferentialEpoch& differences,
                                                         const fsw::Vector3& servicer_eci,
                                                         const fsw::Vector3& baseline_eci);
 
 class DifferenceNoise {
  public:
-  /// Epochs in order of time.
+  /// Adds an epoch; epochs come in order of time.
   void add(const ResidualEpoch& epoch);
 
-  /// One row for each signal that was measured.
+  /// Returns one row for each signal that was measured.
   [[nodiscard]] std::vector<SignalNoiseRow> rows() const;
 
  private:
@@ -77,7 +78,7 @@ class DifferenceNoise {
   std::array<SignalSums, fsw::gnss::kSignals> signals_{};
 };
 
-/// "GPS L1"
+/// Returns the name of a signal: "GPS L1".
 [[nodiscard]] const char* name_of(fsw::gnss::Signal signal);
 
 }  // namespace vbar::sensors

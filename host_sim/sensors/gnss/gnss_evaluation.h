@@ -1,5 +1,5 @@
 #pragma once
-// What a run with GNSS says of it: telemetry as rows, and the noise of both receivers' measurements against the truth.
+// Evaluation of a run with GNSS: telemetry as rows, and the noise of both receivers' measurements against the truth.
 
 #include <deque>
 #include <memory>
@@ -20,7 +20,7 @@ class GnssEvaluation final : public Evaluation {
  public:
   explicit GnssEvaluation(const EvaluationContext& context) : context_(context) {}
 
-  /// The same bytes that the flight software receives, by the same decoders.
+  /// Decodes the bytes that the flight software receives, by the same decoders.
   void on_inputs(fsw::GpsTime time, std::span<const twins::Packet> inputs) override;
   void on_answer(fsw::GpsTime time, std::span<const fsw::packets::PacketView> answer) override;
   void finish() override;

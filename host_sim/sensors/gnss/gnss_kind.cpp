@@ -31,7 +31,7 @@ void check_sources(const TableReader& section, const Sensor& sensor, const Space
   section.refuse_value("source", other + ", the source of " + partner.name + ": the receivers of a pair share a sky");
 }
 
-/// Both ends of relative navigation by GNSS have what it takes.
+/// Checks that both ends of relative navigation by GNSS have the sensors for it.
 void check(const TableReader& section, const Sensor& sensor, const Spacecraft& spacecraft, const Mission& mission) {
   if (settings_of<GnssSensor>(sensor).line.wired == testbeds::Wiring::kBoard && !spacecraft.flight_computer)
     section.refuse_value("wired", "host: " + spacecraft.name + " has no flight computer");

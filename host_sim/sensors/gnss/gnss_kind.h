@@ -13,11 +13,11 @@
 
 namespace vbar::sensors {
 
-/// `observed` is the partner: the spacecraft whose receiver's data come over the crosslink; empty: this one's go to its
-/// partner, or they are all there is, beside a camera of a target that does not cooperate.
+/// Settings of a receiver; `observed` is the partner: the spacecraft whose receiver's data come over the crosslink;
+/// empty: this one's go to its partner, or they are all there is, beside a camera of a target that does not cooperate.
 struct GnssSensor : mission::SensorSettings {
   twins::gnss::GnssReceiverSettings receiver;
-  testbeds::ReceiverLine line;  ///< of a receiver in a testbed
+  testbeds::ReceiverLine line;  ///< line of a receiver in a testbed
 };
 
 /// [navigation.carrier_phase], [constellation] and [links.crosslink].
@@ -30,34 +30,38 @@ struct GnssShared : mission::SharedSettings {
 
 extern const SensorKind kGnss;
 
-/// Carrier-phase navigation: beside the paper, integers, consistency (section_gnss.cpp).
+/// Makes the section of carrier-phase navigation: beside the paper, integers, consistency (section_gnss.cpp).
 [[nodiscard]] report::Section gnss_section(const report::RunRecord& record);
-/// The paper's experiment 3, software and hardware in the loop, if the run meets its waypoints by GNSS.
+/// Returns the figures of the paper's experiment 3, software and hardware in the loop, if the run meets its waypoints
+/// by GNSS.
 [[nodiscard]] std::vector<report::PaperColumn> gnss_paper_columns(const report::RunRecord& record);
 
 // In gnss_figures.cpp: how hardware differs from a twin.
 [[nodiscard]] report::Section signal_noise_section(const report::RunRecord& record);
-/// Time (s) from the run's first step until the relative position error stays below 20 mm; empty: it does not.
+/// Returns the time (s) from the run's first step until the relative position error stays below 20 mm; empty: it does
+/// not.
 [[nodiscard]] std::optional<double> time_to_20_mm(const report::RunRecord& record);
 void summarise_gnss(const report::RunRecord& record, report::Summary& summary);
 
-/// NEES of the relative state; NIS of all codes and carrier phases of an epoch.
+/// Returns the NEES of the relative state; NIS of all codes and carrier phases of an epoch.
 [[nodiscard]] std::vector<report::ConsistencyFigure> gnss_consistency(const report::RunRecord& record);
 
-// In read_gnss.cpp.
+// In gnss_kind.cpp.
 std::shared_ptr<const mission::SensorSettings> read_gnss(const mission::TableReader& section,
                                                          const mission::SensorContext& context);
 std::shared_ptr<const mission::SharedSettings> read_gnss_shared(const mission::TableReader& document,
                                                                 const mission::Mission& mission);
 
-/// Antennas are the nominal ones: of the spacecraft that flies,
+/// Returns the telecommand of the receiver of the spacecraft that flies, with the nominal antenna.
 [[nodiscard]] vbar::receiver_configuration receiver_configuration_of(const mission::Spacecraft& servicer);
-/// and of its GNSS partner, which it must have.
+/// Returns the telecommand of carrier-phase navigation with the nominal antenna of the GNSS partner, which the servicer
+/// must have.
 [[nodiscard]] vbar::carrier_configuration carrier_configuration_of(const mission::Mission& mission,
                                                                    const mission::Spacecraft& servicer);
 
-/// Distance (m) between where the antennas of `servicer` and its partner are and where navigation takes them to be,
-/// from the run's own draws, as if the bodies had parallel axes. For the report only. None without a GNSS pair.
+/// Returns the distance (m) between where the antennas of `servicer` and its partner are and where navigation takes
+/// them to be, from the run's own draws, as if the bodies had parallel axes. For the report only. None without a GNSS
+/// pair.
 [[nodiscard]] std::optional<double> gnss_static_floor_m(const mission::Mission& mission,
                                                         const mission::Spacecraft& servicer);
 

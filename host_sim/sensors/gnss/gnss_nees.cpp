@@ -17,7 +17,7 @@ Eigen::Vector3d vector(const report::Triple& v) {
   return {v[0], v[1], v[2]};
 }
 
-/// Of the servicer about the Earth, rad/s.
+/// Orbital rate of the servicer about the Earth, rad/s.
 double orbital_rate(const report::TruthRow& truth) {
   const Eigen::Vector3d r = vector(truth.servicer_position_eci);
   return r.cross(vector(truth.servicer_velocity_eci)).norm() / r.squaredNorm();

@@ -73,7 +73,7 @@ std::vector<std::string> papers_row(const std::vector<WaypointRow>& waypoints, c
   return cells;
 }
 
-/// The paper's figures stand below those of a run that meets its waypoints.
+/// The paper's figures are printed below those of a run that meets its waypoints.
 std::string performance_table(const RunRecord& record) {
   const std::vector<WaypointRow> waypoints = reached_waypoints(record);
   std::vector<Column> columns{{"", false}, {"", false}};
@@ -114,7 +114,7 @@ struct EpochNis {
   double time_s = 0.0;
   double nis = 0.0;  ///< over the number of measurements
   std::size_t measurements = 0;
-  Range band;  ///< 95 % of it
+  Range band;  ///< 95 % band of the distribution
 };
 
 struct NisKind {

@@ -8,7 +8,7 @@
 
 namespace vbar::sensors {
 
-/// Sigmas are those of double differences. Absent: too few measurements.
+/// Noise of one signal. Sigmas are those of double differences. Absent: too few measurements.
 struct SignalNoiseRow {
   std::string signal;            ///< "GPS L1"
   std::size_t measurements = 0;  ///< differences between the receivers
@@ -19,8 +19,8 @@ struct SignalNoiseRow {
   std::optional<double> code_sigma_m;
   std::optional<double> code_sigma_stated_m;
   std::optional<double> code_correlation_10s;
-  /// Of one channel of one receiver: the correlated part of the phase, as a first-order Gauss-Markov process. Absent:
-  /// not significant.
+  /// Correlated part of the phase of one channel of one receiver, as a first-order Gauss-Markov process. Absent: not
+  /// significant.
   std::optional<double> phase_wander_sigma_mm;
   std::optional<double> phase_wander_time_s;
 };

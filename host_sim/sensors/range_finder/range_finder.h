@@ -16,22 +16,23 @@ namespace vbar::sensors {
 struct RangeFinderSettings {
   double range_min_m = 0.5, range_max_m = 1000.0;  ///< beyond them nothing is measured
   double bias_sigma_m = 0.0, noise_sigma_m = 0.0;
-  double half_angle_rad = 0.0;                          ///< of the cone of the field of view
+  double half_angle_rad = 0.0;                          ///< half angle of the cone of the field of view
   fsw::Vector3 boresight_body = fsw::Vector3::UnitZ();  ///< unit vector
   fsw::Duration period;                                 ///< > 0
 };
 
-/// Where the target is, as the instrument sees it.
+/// Place of the target as the instrument sees it.
 struct LineOfSight {
   double range_m = 0.0;
   double off_boresight_rad = 0.0;
 };
 
-/// None if the truth lacks a spacecraft or the servicer's attitude.
+/// Returns the line of sight to the target; none if the truth lacks a spacecraft or the servicer's attitude.
 [[nodiscard]] std::optional<LineOfSight> line_of_sight(const twins::TruthSnapshot& truth, const std::string& servicer,
                                                        const std::string& target, const fsw::Vector3& boresight_body);
 
-/// Inside the field of view and the limits of the range, these included. Both are of the centre of mass.
+/// Whether the target is inside the field of view and the limits of the range, these included. Both are of the centre
+/// of mass.
 [[nodiscard]] bool is_measurable(const LineOfSight& sight, const RangeFinderSettings& settings);
 
 class RangeFinder final : public twins::PacketSource {
@@ -42,18 +43,18 @@ class RangeFinder final : public twins::PacketSource {
     fsw::GpsTime start;  ///< first epoch
   };
 
-  /// `stream`: of its errors.
+  /// Makes a range finder; `stream` is that of its errors.
   RangeFinder(const RangeFinderSettings& settings, const Place& place, const engine::RandomStream& stream);
 
   [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override;
 
-  /// One range_measurement packet; none if the target is not measurable. kFailed without the truth it needs.
+  /// Measures one range_measurement packet; none if the target is not measurable. kFailed without the truth it needs.
   twins::Measurement measure(const twins::TruthSnapshot& truth) override;
 
   [[nodiscard]] bool truth_is_compared() const override { return true; }
 
  private:
-  /// Belongs to the epoch, whatever was measured before.
+  /// Returns the noise of an epoch, which does not depend on earlier measurements.
   [[nodiscard]] double noise_m(fsw::GpsTime time) const;
 
   RangeFinderSettings settings_;

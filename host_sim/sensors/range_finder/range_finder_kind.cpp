@@ -50,7 +50,7 @@ void check(const TableReader& section, const mission::Sensor& /*sensor*/, const 
                    "a spacecraft with an attitude: the boresight points somewhere");
 }
 
-/// What navigation is told of its errors, if it is to use its ranges.
+/// Adds the telecommand with the errors of the range finder, if navigation uses its ranges.
 void add_telecommands(const mission::Sensor& sensor, const TelecommandContext& /*context*/,
                       Telecommands& telecommands) {
   const auto& own = settings_of<RangeFinderSensor>(sensor);
@@ -61,7 +61,8 @@ void add_telecommands(const mission::Sensor& sensor, const TelecommandContext& /
   telecommands.add(configuration);
 }
 
-/// Of a measurement that a testbed provides: within the limits of the range, but for errors of six sigmas.
+/// Checks a measurement that a testbed provides: it must be within the limits of the range, but for errors of six
+/// sigmas.
 std::string fault_of_range(const fsw::packets::PacketView& packet, const RangeFinderSettings& settings) {
   const auto measurement = fsw::packets::decode<vbar::range_measurement>(packet);
   if (!measurement.ok()) return {};  // found before

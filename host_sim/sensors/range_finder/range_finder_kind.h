@@ -7,7 +7,8 @@
 
 namespace vbar::sensors {
 
-/// It observes no spacecraft in the sense of SensorSettings::observed: it does not choose the kind of navigation.
+/// Settings of a range finder. It observes no spacecraft in the sense of SensorSettings::observed: it does not choose
+/// the kind of navigation.
 struct RangeFinderSensor : mission::SensorSettings {
   std::string target;
   RangeFinderSettings range_finder;
@@ -16,7 +17,7 @@ struct RangeFinderSensor : mission::SensorSettings {
 
 extern const SensorKind kRangeFinder;
 
-// In range_evaluation.cpp.
+// In range_report.cpp.
 [[nodiscard]] std::unique_ptr<Evaluation> evaluate_ranges(const mission::Sensor& sensor,
                                                           const EvaluationContext& context);
 

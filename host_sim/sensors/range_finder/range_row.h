@@ -16,7 +16,7 @@ struct RangeRow {
   std::optional<double> error_m;     ///< measured less true
   std::optional<double> off_boresight_deg;
   bool in_field_of_view = false;
-  double sigma_m = 0.0;  ///< of an error, bias and noise together
+  double sigma_m = 0.0;  ///< 1 sigma of an error, bias and noise together
 };
 
 template <report::columns::RowOf<RangeRow> Row, class Visitor>

@@ -5,7 +5,7 @@
 
 namespace vbar::truth {
 
-/// N points at ascending x.
+/// Spline through N points at ascending x.
 template <int N>
 class ClampedSpline {
  public:
@@ -44,7 +44,7 @@ class ClampedSpline {
     return a * y_[i] + b * y_[i + 1] + ((a * a * a - a) * bend_[i] + (b * b * b - b) * bend_[i + 1]) * h * h / 6.0;
   }
 
-  /// From the first point to x.
+  /// Returns the integral from the first point to x.
   double integral(double x) const {
     const int i = interval(x);
     return integral_[i] + integral_within(i, x);

@@ -25,7 +25,7 @@ struct LowerThermosphereVariations {
   double bottom_gradient;             ///< at 72.5 km
 };
 
-/// The same below 72.5 km, in the order of the published array pma without its ninth row (the bottom gradient above).
+/// Variations below 72.5 km, in the order of the published array pma without its ninth row (the bottom gradient above).
 struct LowerAtmosphereVariations {
   std::array<double, 3> stratosphere;  ///< at 55, 45, 32.5 km
   std::array<double, 4> troposphere;   ///< at 20, 15, 10, 0 km
@@ -33,14 +33,14 @@ struct LowerAtmosphereVariations {
   double joint_gradient;               ///< at 32.5 km
 };
 
-/// Computing the series costs some 50 evaluations, so it is done only when day or indices change.
+/// Series of one day. Computing them costs some 50 evaluations, so it is done only when day or indices change.
 class DayExpansions {
  public:
   explicit DayExpansions(std::shared_ptr<const Nrlmsise00Tables> tables) : tables_(std::move(tables)) {}
 
   void set_day(int day_of_year, const SolarIndices& indices);
 
-  /// The annual wave that displaces the turbopause, with opposite signs in the two hemispheres: -1 to 1.
+  /// Returns the annual wave that displaces the turbopause, with opposite signs in the two hemispheres: -1 to 1.
   double turbopause_season() const { return turbopause_season_; }
 
   UpperVariations upper(const HorizontalSeries& functions, double latitude_deg) const;

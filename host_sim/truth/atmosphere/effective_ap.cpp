@@ -34,7 +34,7 @@ double EffectiveAp::at(double latitude_deg) const {
   if (!remembers_) return daily_;
   constexpr double kMaxDecay = 0.99999;  // the sums below divide by 1 - e
   const double e = std::min(std::exp(-fading_ / (1.0 + latitude_slope_ * (45.0 - std::abs(latitude_deg)))), kMaxDecay);
-  // Weights e^k of the k-th three hours before; a mean of eight stands for eight neighbouring powers.
+  // Weights e^k of the k-th three hours before; a mean of eight replaces eight neighbouring powers.
   const double e2 = e * e, e3 = e2 * e, e4 = e2 * e2, e8 = e4 * e4, e12 = e8 * e4;
   const double eight = (1.0 - e8) / (1.0 - e);
   const double sum = history_[0] + history_[1] * e + history_[2] * e2 + history_[3] * e3 +

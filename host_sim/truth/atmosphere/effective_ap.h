@@ -13,10 +13,10 @@ class EffectiveAp {
  public:
   EffectiveAp() = default;
 
-  /// `p`: the coefficients of the quantity.
+  /// Evaluates the coupling to ap; `p` are the coefficients of the quantity.
   EffectiveAp(const Nrlmsise00Tables::Upper& p, const SolarIndices& indices);
 
-  /// The decay depends on the distance of the latitude from 45 deg.
+  /// Returns the effective ap at a latitude: the decay depends on the distance of the latitude from 45 deg.
   double at(double latitude_deg) const;
 
  private:

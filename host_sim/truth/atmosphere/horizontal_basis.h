@@ -14,8 +14,8 @@ inline constexpr double kModelHour = 0.2618;
 inline constexpr double kModelSecond = 7.2722e-5;
 inline constexpr double kModelDay = 1.72142e-2;
 
-/// Where each group of functions begins. P_nm is unnormalised, without the Condon-Shortley phase. In a group of waves
-/// each Legendre function takes two places: times the cosine, times the sine.
+/// Place at which each group of functions begins. P_nm is unnormalised, without the Condon-Shortley phase. In a group
+/// of waves each Legendre function takes two places: times the cosine, times the sine.
 enum HorizontalGroup : int {
   kZonal = 0,                               ///< P_00 ... P_60
   kDiurnal = kZonal + 7,                    ///< P_11, P_12, P_13, P_15 x local time

@@ -22,7 +22,7 @@ Seasons seasons(const Coefficients& p, int day) {
   return {season(day, 1, p[31]), season(day, 2, p[17]), season(day, 1, p[13]), season(day, 2, p[38])};
 }
 
-/// The tides: waves of local time, half and a third of it.
+/// Adds the tides: waves of local time with periods of a day, half a day and a third of a day.
 template <class Coefficients>
 void add_tides(HorizontalSeries& series, const Coefficients& p, double factor, double annual_opposite) {
   const auto add = [&](int group, int index, double cosine, double sine) {
@@ -59,7 +59,7 @@ HorizontalSeries magnetic_response(const Nrlmsise00Tables::Upper& p, const Magne
   const double longitude = kModelDegree * p[at.longitude_peak_deg];
   const double seasonal_longitude = kModelDegree * p[at.seasonal_longitude_peak_deg];
   const double universal_time = kModelSecond * p[at.universal_time_peak_s];
-  constexpr int kDiurnalPlaces[3] = {0, 2, 3};  // of P_11, P_13, P_15
+  constexpr int kDiurnalPlaces[3] = {0, 2, 3};  // places of P_11, P_13, P_15
   for (int i = 0; i < 3; ++i) {
     series[kZonal + 2 * i] += p[at.zonal[i]];
     series[kZonal + 2 * i + 1] += p[at.opposite + i] * annual_opposite;

@@ -8,16 +8,16 @@
 
 namespace vbar::truth {
 
-/// A quantity is quiet + (effective ap) magnetic.
+/// Series of a quantity, which is quiet + (effective ap) magnetic.
 struct ExpansionOfDay {
   HorizontalSeries quiet{};
   HorizontalSeries magnetic{};
 };
 
-/// A quantity of the thermosphere (Hedin 1987, eq. A22 ff.; "globe" expansion).
+/// Expands a quantity of the thermosphere (Hedin 1987, eq. A22 ff.; "globe" expansion).
 ExpansionOfDay upper_expansion(const Nrlmsise00Tables::Upper& p, int day_of_year, const SolarIndices& indices);
 
-/// A quantity below 120 km (Hedin 1991, J. Geophys. Res. 96): fewer terms, no universal time.
+/// Expands a quantity below 120 km (Hedin 1991, J. Geophys. Res. 96): fewer terms, no universal time.
 ExpansionOfDay lower_expansion(const Nrlmsise00Tables::Lower& p, int day_of_year, const SolarIndices& indices);
 
 }  // namespace vbar::truth

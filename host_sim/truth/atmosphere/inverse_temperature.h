@@ -15,7 +15,8 @@ struct SplineLevel {
   double weight = 0.0;       ///< minus the integral of g dz / (R T) from the top node, mol/g
 };
 
-/// N nodes, altitudes (km) descending; temperatures K; gradients K/km at the highest and the lowest node.
+/// Profile through N nodes, altitudes (km) descending; temperatures K; gradients K/km at the highest and the lowest
+/// node.
 template <int N>
 class InverseTemperature {
  public:
@@ -45,7 +46,7 @@ class InverseTemperature {
  private:
   double top_km_ = 0.0;
   double depth_ = 0.0;   // geopotential km, negative
-  double weight_ = 0.0;  // of the whole depth at 1 K
+  double weight_ = 0.0;  // weight of the whole depth at 1 K
   ClampedSpline<N> spline_;
 };
 

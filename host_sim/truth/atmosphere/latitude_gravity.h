@@ -14,13 +14,13 @@ struct LatitudeGravity {
     radius_km = 2.0 * surface / (3.085462e-6 + 2.27e-9 * c) * 1e-5;
   }
 
-  /// cm/s^2
+  /// Returns gravity, cm/s^2.
   double at(double altitude_km) const {
     const double ratio = 1.0 + altitude_km / radius_km;
     return surface / (ratio * ratio);
   }
 
-  /// Geopotential altitude above `reference_km`, in km of gravity at the reference.
+  /// Returns the geopotential altitude above `reference_km`, in km of gravity at the reference.
   double geopotential_km(double altitude_km, double reference_km) const {
     return (altitude_km - reference_km) * (radius_km + reference_km) / (radius_km + altitude_km);
   }

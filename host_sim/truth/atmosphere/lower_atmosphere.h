@@ -17,12 +17,13 @@ struct LowerAtmosphereState {
   double temperature = 0.0;  ///< K
 };
 
-/// Immutable; may be shared between threads.
+/// Air below 72.5 km. Immutable; may be shared between threads.
 class LowerAtmosphere {
  public:
   explicit LowerAtmosphere(const Nrlmsise00Tables& tables);
 
-  /// At 0 to 72.5 km. `bottom`: the thermosphere at its bottom, 72.5 km, of the same instant and place.
+  /// Returns the state at 0 to 72.5 km. `bottom`: the thermosphere at its bottom, 72.5 km, of the same instant and
+  /// place.
   LowerAtmosphereState at(double altitude_km, const LatitudeGravity& gravity, const ThermosphereState& bottom,
                           const LowerAtmosphereVariations& variations) const;
 

@@ -38,11 +38,11 @@ struct AtmosphereState {
   double exospheric_temperature = 0.0;  ///< K; the mean one at 123.4 km and below
 };
 
-/// Not thread-safe (results that depend on day and indices are cached): one object per thread. The result depends
-/// on the input only.
+/// The model. Not thread-safe (results that depend on day and indices are cached): one object per thread. The result
+/// depends on the input only.
 class Nrlmsise00 {
  public:
-  /// `tables`, shared between objects, must not be null.
+  /// Makes the model; `tables`, shared between objects, must not be null.
   explicit Nrlmsise00(std::shared_ptr<const Nrlmsise00Tables> tables);
 
   /// Throws std::invalid_argument for an input that is not finite, or a day or latitude out of range; std::domain_error

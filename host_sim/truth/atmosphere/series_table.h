@@ -8,7 +8,7 @@
 
 namespace vbar::truth {
 
-/// `kCount` series in the first `kFunctions` functions.
+/// Table of `kCount` series in the first `kFunctions` functions.
 template <int kCount, int kFunctions>
 class SeriesTable {
  public:

@@ -5,7 +5,7 @@
 
 namespace vbar::truth {
 
-/// Which Ap the atmosphere is given: the day's mean, or the last 57 hours in steps of three.
+/// Ap that the atmosphere model receives: the day's mean, or the last 57 hours in steps of three.
 enum class GeomagneticIndex { kDaily, kThreeHourly };
 
 struct SolarIndices {

@@ -12,7 +12,7 @@ struct Thermosphere::Column {
   const BatesProfile& bates;
   const LowerThermosphereNodes& nodes;
   const ThermosphereTemperature& profile;
-  ThermosphereLevel level;  ///< of the altitude
+  ThermosphereLevel level;  ///< level of the altitude
   double log_n2_at_homopause = 0.0;
 };
 

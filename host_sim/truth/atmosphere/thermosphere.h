@@ -30,7 +30,7 @@ struct ThermosphereState {
   double bottom_gradient = 0.0;         ///< K/km, there
 };
 
-/// Immutable; may be shared between threads.
+/// Air from 72.5 km up. Immutable; may be shared between threads.
 class Thermosphere {
  public:
   static constexpr double kBottomKm = 72.5;
@@ -38,7 +38,7 @@ class Thermosphere {
 
   explicit Thermosphere(const Nrlmsise00Tables& tables);
 
-  /// At kBottomKm or above.
+  /// Returns the state at kBottomKm or above.
   ThermosphereState at(double altitude_km, const LatitudeGravity& gravity,
                        const ThermosphereConditions& conditions) const;
 

@@ -10,7 +10,8 @@
 
 namespace vbar::truth {
 
-/// T(z) = exospheric - (exospheric - boundary) exp(-shape * geopotential altitude above the boundary).
+/// Temperature profile T(z) = exospheric - (exospheric - boundary) exp(-shape * geopotential altitude above the
+/// boundary).
 struct BatesProfile {
   double exospheric = 0.0;   ///< K
   double boundary = 0.0;     ///< K, at boundary_km
@@ -25,7 +26,8 @@ struct LowerThermosphereNodes {
   double bottom_gradient = 0.0;         ///< K/km, at the lowest
 };
 
-/// A species of molar mass M and thermal diffusion coefficient alpha in equilibrium has, relative to the boundary,
+/// Level of the profile. A species of molar mass M and thermal diffusion coefficient alpha in equilibrium has, relative
+/// to the boundary,
 ///   ln n = (1 + alpha) log_cooling + M weight.
 struct ThermosphereLevel {
   double temperature = 0.0;  ///< K
@@ -33,7 +35,7 @@ struct ThermosphereLevel {
   double weight = 0.0;       ///< minus the integral of g dz / (R T) from the boundary, mol/g
 };
 
-/// Of Bates's profile, at the joint or above.
+/// Returns the level of Bates's profile at an altitude, the joint or above.
 ThermosphereLevel bates_level(const LatitudeGravity& gravity, const BatesProfile& bates, double altitude_km);
 
 class ThermosphereTemperature {
@@ -41,7 +43,7 @@ class ThermosphereTemperature {
   ThermosphereTemperature(const LatitudeGravity& gravity, const BatesProfile& bates,
                           const LowerThermosphereNodes& nodes);
 
-  /// At 72.5 km or above.
+  /// Returns the level at 72.5 km or above.
   ThermosphereLevel at(double altitude_km) const;
 
  private:

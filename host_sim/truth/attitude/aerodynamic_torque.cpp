@@ -9,7 +9,7 @@ using fsw::Vector3;
 
 namespace {
 
-constexpr double kEarthRate_radps = 7.292115146706979e-5;  // of the Earth rotation angle (IERS 2010, eq. 5.15)
+constexpr double kEarthRate_radps = 7.292115146706979e-5;  // rate of the Earth rotation angle (IERS 2010, eq. 5.15)
 
 }  // namespace
 

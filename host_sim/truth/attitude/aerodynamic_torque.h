@@ -14,7 +14,7 @@
 
 namespace vbar::truth {
 
-/// The air at a spacecraft. Its discontinuities have dates, as those of a torque have (torque.h).
+/// The air at a spacecraft. Its discontinuities have dates, as those of a torque have.
 class Air {
  public:
   Air() = default;
@@ -22,7 +22,7 @@ class Air {
   Air& operator=(const Air&) = delete;
   virtual ~Air() = default;
 
-  /// kg/m^3, in the interval entered last.
+  /// Returns the density, kg/m^3, in the interval entered last.
   [[nodiscard]] virtual double density(const ForceInput& orbit) = 0;
 
   [[nodiscard]] virtual double next_jump_after(double /*seconds*/) const {
@@ -47,7 +47,7 @@ class AerodynamicTorque final : public Torque {
   std::unique_ptr<Air> air_;
 };
 
-/// Velocity with respect to an atmosphere that rotates with the Earth, m/s, in ECI.
+/// Returns the velocity with respect to an atmosphere that rotates with the Earth, m/s, in ECI.
 [[nodiscard]] fsw::Vector3 velocity_through_air_eci(const ForceInput& orbit);
 
 }  // namespace vbar::truth

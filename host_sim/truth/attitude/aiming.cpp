@@ -37,7 +37,7 @@ AttitudeState aimed_attitude(const Vector3& boresight_body, const Vector3& secon
   const Matrix3 axes_eci = axes_of(primary.along, secondary.along);
   const Matrix3 axes_body = axes_of(boresight_body, second_body);
 
-  // Axes e1, e2, e3 that turn at w have e1' e2 = w3, e3' e1 = w2, e3' e2 = -w1.
+  // Axes e1, e2, e3 that rotate at w have e1' e2 = w3, e3' e1 = w2, e3' e2 = -w1.
   const Vector3 across_rate = primary.rate.cross(secondary.along) + primary.along.cross(secondary.rate);
   const Vector3 e1_rate = unit_rate(primary.along, primary.rate);
   const Vector3 e3_rate = unit_rate(across, across_rate);

@@ -6,7 +6,7 @@
 
 namespace vbar::truth {
 
-/// Times are seconds after the model's epoch. Not thread-safe: one thread per spacecraft.
+/// Attitude over time. Times are seconds after the model's epoch. Not thread-safe: one thread per spacecraft.
 class AttitudeMotion {
  public:
   AttitudeMotion() = default;
@@ -19,11 +19,11 @@ class AttitudeMotion {
   /// least once in each of these steps.
   virtual void advance_to(double seconds, double orbit_step_end) = 0;
 
-  /// An impulse has changed the orbit from `seconds` on, the time of the last advance_to.
+  /// Accounts for an impulse that has changed the orbit from `seconds` on, the time of the last advance_to.
   virtual void orbit_changed(double seconds) = 0;
 
-  /// Attitude at a time for which both the attitude and the orbit are kept. Throws std::out_of_range outside, stating
-  /// what is kept; std::domain_error if the attitude is not defined there.
+  /// Returns the attitude at a time for which both the attitude and the orbit are kept. Throws std::out_of_range
+  /// outside, stating what is kept; std::domain_error if the attitude is not defined there.
   [[nodiscard]] virtual AttitudeState state_at(double seconds) const = 0;
 };
 

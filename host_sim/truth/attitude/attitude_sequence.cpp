@@ -21,7 +21,7 @@ Matrix3 cross_matrix(const Vector3& v) {
   return matrix;
 }
 
-/// Right Jacobian of the rotation group: a rotation exp(p) that goes from body to reference axes turns at J(p) p' in
+/// Right Jacobian of the rotation group: a rotation exp(p) that goes from body to reference axes rotates at J(p) p' in
 /// body axes (Chirikjian 2012, eq. 10.86).
 Matrix3 right_jacobian(const Vector3& p) {
   const double angle = p.norm();

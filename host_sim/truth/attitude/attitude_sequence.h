@@ -14,13 +14,13 @@
 
 namespace vbar::truth {
 
-/// Where a slew begins: the motion that is left and the next one, at that instant.
+/// Beginning of a slew: the motion that is left and the next one, at that instant.
 struct SlewStart {
   AttitudeState from;
   AttitudeState to;
 };
 
-/// The attitude `elapsed_s` (0 to `slew_s`) after the beginning of a slew. `to`: the next motion at that time.
+/// Returns the attitude `elapsed_s` (0 to `slew_s`) after the beginning of a slew. `to`: the next motion at that time.
 [[nodiscard]] AttitudeState slewed_attitude(const SlewStart& start, const AttitudeState& to, double elapsed_s,
                                             double slew_s);
 
@@ -47,7 +47,8 @@ class AttitudeSequence final : public AttitudeMotion {
 
   std::unique_ptr<AttitudeMotion> first_;
   std::vector<Later> later_;
-  std::vector<std::optional<SlewStart>> starts_;  ///< of `later_`, once reached: neither motion keeps its past
+  std::vector<std::optional<SlewStart>>
+      starts_;  ///< beginnings of the slews of `later_`, once reached: neither motion keeps its past
 };
 
 }  // namespace vbar::truth

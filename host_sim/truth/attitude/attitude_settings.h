@@ -18,7 +18,7 @@ enum class TorqueKind { kGravityGradient, kAerodynamic, kRadiation };
 struct TumbleSettings {
   Body body;
   std::vector<TorqueKind> torques;
-  double drag_coefficient = 0.0;  ///< of the facets, for the aerodynamic torque
+  double drag_coefficient = 0.0;  ///< coefficient of the facets, for the aerodynamic torque
   AttitudeState start;
 };
 

@@ -14,7 +14,7 @@ struct AttitudeState {
   fsw::Vector3 rate_body = fsw::Vector3::Zero();
 };
 
-/// Angle of the rotation that takes one attitude to the other, rad, 0 to pi; precise for small angles too.
+/// Returns the angle of the rotation that takes one attitude to the other, rad, 0 to pi; precise for small angles too.
 inline double angle_between(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
   return a.angularDistance(b);
 }

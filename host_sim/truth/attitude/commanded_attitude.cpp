@@ -18,7 +18,7 @@ using fsw::Vector3;
 
 constexpr double kZenithClearance_rad = 0.0087;  // half a degree
 
-/// A direction given in RTN, and its rate there, in ECI. The frame turns at (r f_N / h, 0, h / r^2): the acceleration
+/// A direction given in RTN, and its rate there, in ECI. The frame rotates at (r f_N / h, 0, h / r^2): the acceleration
 /// across the plane tilts it about the position, the other component is the motion along the orbit.
 MovingDirection in_eci(const OrbitalMotion& own, const Vector3& along_rtn, const Vector3& rate_rtn) {
   const Vector3& position = own.position_eci;

@@ -14,7 +14,7 @@ namespace vbar::truth {
 
 struct Sinusoid {
   double amplitude = 0.0;   ///< rad
-  double rate_radps = 0.0;  ///< of its argument
+  double rate_radps = 0.0;  ///< rate of its argument
   double phase = 0.0;       ///< at the epoch
 };
 
@@ -37,26 +37,27 @@ struct PointingCommand {
 /// The line of a command is followed for this time; then the boresight stays at its end.
 inline constexpr double kLongestLine_s = 600.0;
 
-/// Whether a line that begins at `boresight_rtn` (any length) and goes on by `rate_rtn` stays for kLongestLine_s half a
-/// degree away from zenith and nadir, where the second axis is undefined. False for input that is zero or not
-/// finite.
+/// Returns whether a line that begins at `boresight_rtn` (any length) and goes on by `rate_rtn` stays for
+/// kLongestLine_s half a degree away from zenith and nadir, where the second axis is undefined. False for input that is
+/// zero or not finite.
 [[nodiscard]] bool leaves_zenith_clear(const fsw::Vector3& boresight_rtn, const fsw::Vector3& rate_rtn);
 
-/// A pure function of the orbit and the commands.
+/// Attitude that is a pure function of the orbit and the commands.
 class CommandedAttitude final : public AttitudeMotion {
  public:
   /// Throws std::invalid_argument for parallel axes, or an initial boresight at the zenith or nadir.
   CommandedAttitude(const CommandedAxes& axes, const ControlError& control_error, MotionOfTime own);
 
-  /// From the command's time on; replaces commands for that time and later. False, and nothing has changed, for one
-  /// that comes near the zenith or is not finite (leaves_zenith_clear). Attitudes already returned do not change: the
-  /// caller ensures that the time is not in the past.
+  /// Follows a command from its time on; replaces commands for that time and later. False, and nothing has changed, for
+  /// one that comes near the zenith or is not finite (leaves_zenith_clear). Attitudes already returned do not change:
+  /// the caller ensures that the time is not in the past.
   bool take(const PointingCommand& command);
 
   void advance_to(double /*seconds*/, double /*orbit_step_end*/) override {}
   void orbit_changed(double /*seconds*/) override {}
 
-  /// Rates are exact: of the RTN frame with the true forces, of the command and of the control error.
+  /// Returns attitude and rates, which are exact: those of the RTN frame with the true forces, of the command and of
+  /// the control error.
   [[nodiscard]] AttitudeState state_at(double seconds) const override;
 
  private:

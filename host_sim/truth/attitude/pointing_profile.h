@@ -14,7 +14,7 @@ namespace vbar::truth {
 struct OrbitalMotion {
   fsw::Vector3 position_eci = fsw::Vector3::Zero();
   fsw::Vector3 velocity_eci = fsw::Vector3::Zero();
-  fsw::Vector3 acceleration_eci = fsw::Vector3::Zero();  ///< all of it, the point mass included
+  fsw::Vector3 acceleration_eci = fsw::Vector3::Zero();  ///< total acceleration, the point mass included
 };
 
 using MotionOfTime = std::function<OrbitalMotion(double seconds)>;
@@ -39,25 +39,25 @@ struct PointingSettings {
   fsw::Vector3 second_body = fsw::Vector3::UnitY();
 };
 
-/// Whether two body axes (of any length) span a plane: neither zero nor parallel within kLeastAngle_rad.
+/// Returns whether two body axes (of any length) span a plane: neither zero nor parallel within kLeastAngle_rad.
 [[nodiscard]] bool are_two_axes(const fsw::Vector3& a, const fsw::Vector3& b);
 
-/// Whether two directions are always the same or opposite.
+/// Returns whether two directions are always the same or opposite.
 [[nodiscard]] bool are_one_line(Direction a, Direction b);
 
-/// A pure function of the orbits: it holds no state.
+/// Attitude that is a pure function of the orbits: it holds no state.
 class PointingProfile final : public AttitudeMotion {
  public:
-  /// `own`: of the pointing spacecraft. `other`: of the one pointed at, and `sun`: needed only if a direction of the
-  /// settings says so. Throws std::invalid_argument for parallel body axes, directions on one line, and for
-  /// missing motions that are needed.
+  /// Makes a profile. `own` is the motion of the pointing spacecraft; `other` that of the one pointed at, and `sun`,
+  /// are needed only if a direction of the settings requires them. Throws std::invalid_argument for parallel body axes,
+  /// directions on one line, and for missing motions that are needed.
   PointingProfile(const PointingSettings& settings, MotionOfTime own, MotionOfTime other, SunOfTime sun);
 
   void advance_to(double /*seconds*/, double /*orbit_step_end*/) override {}
   void orbit_changed(double /*seconds*/) override {}
 
-  /// The rate is that of the directions' own motion and exact but for the Sun's (differenced over two minutes, 1e-15
-  /// rad/s). std::domain_error: the boresight lies along the second direction.
+  /// Returns attitude and rate; the rate is that of the directions' own motion and exact but for the Sun's (differenced
+  /// over two minutes, 1e-15 rad/s). Throws std::domain_error if the boresight lies along the second direction.
   [[nodiscard]] AttitudeState state_at(double seconds) const override;
 
  private:

@@ -11,7 +11,7 @@
 
 namespace vbar::truth {
 
-/// Visible fraction of the Sun. Where it jumps it has an edge, as a torque has (torque.h).
+/// Visible fraction of the Sun. Where it jumps it has an edge, as a torque has.
 class Sunlight {
  public:
   Sunlight() = default;
@@ -19,7 +19,7 @@ class Sunlight {
   Sunlight& operator=(const Sunlight&) = delete;
   virtual ~Sunlight() = default;
 
-  /// 0 (eclipse) to 1 (full Sun), on the side last set.
+  /// Returns the visible fraction, 0 (eclipse) to 1 (full Sun), on the side last set.
   [[nodiscard]] virtual double fraction(const ForceInput& orbit) const = 0;
 
   [[nodiscard]] virtual int edge_count() const { return 0; }

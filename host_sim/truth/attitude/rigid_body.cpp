@@ -17,7 +17,7 @@ namespace {
 using fsw::Matrix3;
 using fsw::Vector3;
 
-/// Of an attitude step at which the angular momentum of a body at rest is measured: once around in a low orbit.
+/// Rate of rotation whose angular momentum scales the errors of a body at rest: once around in a low orbit.
 constexpr double kOrbitRate_radps = 1e-3;
 
 /// An edge is crossed in some seconds and a step takes no more than a minute: four parts miss no relevant one.

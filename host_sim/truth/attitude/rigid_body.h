@@ -22,32 +22,34 @@ namespace vbar::truth {
 /// exactly).
 void check_inertia(const fsw::Matrix3& inertia_kgm2);
 
-/// The integrator's steps depend on the start, the torques and the orbit with its steps only: not on the times asked
-/// for, so neither does the motion.
+/// Rotation of one body. The integrator's steps depend on the start, the torques and the orbit with its steps only: not
+/// on the times asked for, so neither does the motion.
 class RigidBody final : public AttitudeMotion {
  public:
   /// The orbit at a time for which it is known; asked for only if there are torques.
   using OrbitOfTime = std::function<ForceInput(double seconds)>;
 
-  /// `inertia_kgm2`: about the centre of mass, in body axes (check_inertia). `tolerance`: local error a step, in rad of
-  /// attitude, and relative to the greater of the initial angular momentum and that of a body which turns once an
-  /// orbit. `orbit` may be empty if there are no torques.
+  /// Makes a body. `inertia_kgm2`: about the centre of mass, in body axes (check_inertia). `tolerance`: local error a
+  /// step, in rad of attitude, and relative to the greater of the initial angular momentum and that of a body which
+  /// rotates once an orbit. `orbit` may be empty if there are no torques.
   RigidBody(const fsw::Matrix3& inertia_kgm2, std::vector<std::unique_ptr<Torque>> torques, OrbitOfTime orbit,
             double tolerance, double seconds, const AttitudeState& start);
 
   void advance_to(double seconds, double orbit_step_end) override;
 
-  /// For a torque-free body, which needs no orbit.
+  /// Advances a torque-free body, which needs no orbit.
   void advance_to(double seconds) { advance_to(seconds, std::numeric_limits<double>::infinity()); }
 
   void orbit_changed(double seconds) override;
 
-  /// Kept: kKeptSpan_s before the last time asked for, up to the end of the last step.
+  /// Returns the attitude at a time that is kept: from kKeptSpan_s before the last time asked for, up to the end of the
+  /// last step.
   [[nodiscard]] AttitudeState state_at(double seconds) const override;
 
   [[nodiscard]] const IntegrationStatistics& statistics() const { return integrator_.statistics(); }
 
-  /// Not longer than an orbit propagator keeps its steps; a shorter span would limit callers that need both.
+  /// Span of the kept steps: not longer than an orbit propagator keeps its steps; a shorter span would limit callers
+  /// that need both.
   static constexpr double kKeptSpan_s = 900.0;
 
  private:

@@ -14,14 +14,14 @@ namespace vbar::truth {
 
 /// Inputs of the attitude models. Those that the settings of a spacecraft do not require may be empty.
 struct AttitudeSurroundings {
-  double gm = 0.0;         ///< of the Earth, m^3/s^2
-  double tolerance = 0.0;  ///< of the integration (RigidBody)
+  double gm = 0.0;         ///< gravitational parameter of the Earth, m^3/s^2
+  double tolerance = 0.0;  ///< tolerance of the integration (RigidBody)
   double seconds = 0.0;    ///< now
   RigidBody::OrbitOfTime orbit;
   std::unique_ptr<Air> air;
   std::unique_ptr<Sunlight> sunlight;
   MotionOfTime own;
-  MotionOfTime other;  ///< of the spacecraft pointed at
+  MotionOfTime other;  ///< motion of the spacecraft pointed at
   SunOfTime sun;
 };
 

@@ -22,25 +22,26 @@ class Torque {
   Torque& operator=(const Torque&) = delete;
   virtual ~Torque() = default;
 
-  /// As in the mission file and in tables: "gravity_gradient", "aerodynamic", "radiation".
+  /// Returns the name as in the mission file and in tables: "gravity_gradient", "aerodynamic", "radiation".
   [[nodiscard]] virtual std::string_view name() const = 0;
 
-  /// Torque about the centre of mass, N m, in body axes. `orbit`: where the spacecraft is at that instant.
+  /// Returns the torque about the centre of mass, N m, in body axes. `orbit`: where the spacecraft is at that instant.
   [[nodiscard]] virtual fsw::Vector3 torque_body(const ForceInput& orbit, const AttitudeState& attitude) = 0;
 
-  /// How many edges it has, and the function of time and orbit whose zero edge `index` is.
+  /// Returns the number of its edges, and the function of time and orbit whose zero edge `index` is.
   [[nodiscard]] virtual int edge_count() const { return 0; }
   [[nodiscard]] virtual double edge(int /*index*/, const ForceInput& /*orbit*/) const { return 1.0; }
 
-  /// From here on (until the next call) the motion is on this side of the edge: edge() positive, or not.
+  /// Sets the side: from here on (until the next call) the motion is on this side of the edge: edge() positive, or not.
   virtual void set_side(int /*index*/, bool /*positive*/) {}
 
-  /// The first date (seconds after the epoch) after `seconds` at which it jumps by itself.
+  /// Returns the first date (seconds after the epoch) after `seconds` at which it jumps by itself.
   [[nodiscard]] virtual double next_jump_after(double /*seconds*/) const {
     return std::numeric_limits<double>::infinity();
   }
 
-  /// The motion (re)starts at `seconds`: until the next jump the torque is that of the interval that begins here.
+  /// Enters the interval in which the motion (re)starts at `seconds`: until the next jump the torque is that of the
+  /// interval that begins here.
   virtual void enter_interval(double /*seconds*/) {}
 };
 

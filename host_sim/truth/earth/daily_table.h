@@ -15,7 +15,7 @@
 
 namespace vbar::truth {
 
-/// Exactly N numbers separated by commas, into `numbers`; false otherwise.
+/// Parses exactly N numbers separated by commas into `numbers`; false for any other text.
 template <std::size_t N>
 bool parse_numbers(std::string_view line, std::array<double, N>& numbers) {
   const char* at = line.data();
@@ -29,7 +29,7 @@ bool parse_numbers(std::string_view line, std::array<double, N>& numbers) {
   return at == end;
 }
 
-/// Whether the first line that is not a comment begins with "mjd_utc,".
+/// Returns whether the first line that is not a comment begins with "mjd_utc,".
 inline bool is_daily_table(std::string_view text) {
   files::TextLines lines(text, "");
   while (lines.next())

@@ -11,14 +11,14 @@ inline constexpr int kLastDataMjd = 88068;   // 2099-12-31
 
 class DaySequence {
  public:
-  /// The day of the current line. Throws files::FormatError if it does not follow the one before.
+  /// Takes the day of the current line. Throws files::FormatError if it does not follow the one before.
   void take(const files::TextLines& lines, int mjd_utc);
 
  private:
   int before_ = 0;
 };
 
-/// The modified Julian day of a calendar date. Throws files::FormatError for a date that does not exist.
+/// Returns the modified Julian day of a calendar date. Throws files::FormatError for a date that does not exist.
 [[nodiscard]] int mjd_of_date(const files::TextLines& lines, int year, int month, int day);
 
 }  // namespace vbar::truth

@@ -35,17 +35,19 @@ class EarthOrientationSeries {
   /// Throws std::runtime_error naming file, line and what is accepted.
   static EarthOrientationSeries load(const std::filesystem::path& file);
 
-  /// `days` in order, without gaps, at least four of them: std::invalid_argument otherwise.
+  /// Makes a series of `days`: in order, without gaps, at least four of them. Throws std::invalid_argument for other
+  /// days.
   explicit EarthOrientationSeries(std::vector<Day> days);
 
-  /// UT1 = UTC as at `time`, a pole at the origin: what is known without data, for all of GPS time. A leap second after
-  /// `time` changes nothing.
+  /// Makes a series with UT1 = UTC as at `time`, a pole at the origin: what is known without data, for all of GPS time.
+  /// A leap second after `time` changes nothing.
   static EarthOrientationSeries unknown(fsw::GpsTime time);
 
-  /// The first instant whose value depends on a prediction; none if all days are observed.
+  /// Returns the first instant whose value depends on a prediction; none if all days are observed.
   [[nodiscard]] std::optional<fsw::GpsTime> predicted_from() const { return predicted_from_; }
 
-  /// Orientation `seconds` after `epoch`. Throws std::out_of_range outside the series, naming the date and the range.
+  /// Returns the orientation `seconds` after `epoch`. Throws std::out_of_range outside the series, naming the date and
+  /// the range.
   EarthOrientation at(fsw::GpsTime epoch, double seconds = 0.0) const;
 
  private:

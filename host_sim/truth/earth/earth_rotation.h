@@ -22,13 +22,14 @@ struct CelestialPole {
   double s = 0.0;
 };
 
-/// The full series of the IERS Conventions 2010 (tables 5.2a, b, d), some 0.1 ms a call. ERFA's other way to the pole,
-/// through the precession-nutation matrix, agrees with it to a microarcsecond (5e-12 rad), as the Conventions say.
+/// Computes the full series of the IERS Conventions 2010 (tables 5.2a, b, d), some 0.1 ms a call. ERFA's other way to
+/// the pole, through the precession-nutation matrix, agrees with it to a microarcsecond (5e-12 rad), as the Conventions
+/// say.
 CelestialPole celestial_pole_iau2006a(JulianDate tt);
 
-/// The same by interpolation: error below 1e-12 rad in x, y and s (held by its test), some 20 ns a call.
-/// Nodes lie at fixed instants, so the result depends on the date only, never on earlier calls.
-/// Not thread-safe (nodes are cached): one object per thread.
+/// Interpolates celestial_pole_iau2006a(): error below 1e-12 rad in x, y and s (held by its test), some 20 ns a call.
+/// Nodes lie at fixed instants, so the result depends on the date only, never on earlier calls. Not thread-safe (nodes
+/// are cached): one object per thread.
 class CelestialPoleInterpolator {
  public:
   CelestialPole at(JulianDate tt);
@@ -45,16 +46,17 @@ class CelestialPoleInterpolator {
   double s_[kNodePoints] = {};
 };
 
-/// Rotation to ITRF from GCRF out of its parts; era, pole_x, pole_y, sp (TIO locator s') in rad.
+/// Returns the rotation to ITRF from GCRF out of its parts; era, pole_x, pole_y, sp (TIO locator s') in rad.
 fsw::Matrix3 R_itrf_gcrf(const CelestialPole& pole, double era, double pole_x, double pole_y, double sp);
 
 /// The real Earth's rotation about one epoch. Not thread-safe: one object per thread.
 class EarthRotation {
  public:
-  /// `orientation` must not be null.
+  /// Makes the rotation; `orientation` must not be null.
   EarthRotation(std::shared_ptr<const EarthOrientationSeries> orientation, fsw::GpsTime epoch);
 
-  /// Rotation to ITRF from GCRF `seconds` after the epoch. Throws std::out_of_range outside the Earth orientation data.
+  /// Returns the rotation to ITRF from GCRF `seconds` after the epoch. Throws std::out_of_range outside the Earth
+  /// orientation data.
   fsw::Matrix3 R_itrf_gcrf_at(double seconds);
 
   fsw::GpsTime epoch() const { return epoch_; }

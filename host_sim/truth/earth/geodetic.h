@@ -11,9 +11,9 @@ struct GeodeticPosition {
   double altitude = 0.0;   ///< m, above the ellipsoid
 };
 
-/// From a position in ITRF, m, more than 100 km from the Earth's centre. Bowring's formula (1976) applied twice: errors
-/// below 1e-14 rad and 1e-8 m from the ground to geostationary (held by its test). A position that is not finite gives
-/// NaNs.
+/// Returns geodetic coordinates from a position in ITRF, m, more than 100 km from the Earth's centre. Bowring's formula
+/// (1976) applied twice: errors below 1e-14 rad and 1e-8 m from the ground to geostationary (held by its test). A
+/// position that is not finite gives NaNs.
 GeodeticPosition geodetic_from_itrf(const fsw::Vector3& position_itrf);
 
 }  // namespace vbar::truth

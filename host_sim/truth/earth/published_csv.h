@@ -15,24 +15,24 @@ class PublishedCsv {
  public:
   using Values = std::vector<std::string_view>;  ///< without blanks about them
 
-  /// Goes to the first line. `lines` must outlive it.
+  /// Reads the header, then goes to the first line. `lines` must outlive it.
   PublishedCsv(files::TextLines& lines, char separator);
 
   /// Throws files::FormatError if no column has the name.
   [[nodiscard]] std::size_t place(std::string_view name) const;
 
-  /// The last column of that name before `place`, of tables in which several columns have one name.
+  /// Returns the last column of that name before `place`, of tables in which several columns have one name.
   [[nodiscard]] std::size_t place_before(std::size_t place, std::string_view name) const;
 
   /// Goes to the next row that is not blank; false at the end. Throws files::FormatError for another number of values.
   bool next();
 
   [[nodiscard]] std::string_view text(std::size_t place) const { return values_[place]; }
-  /// Nothing for a blank one. Throws files::FormatError for what is not a number.
+  /// Returns the number of a column; nothing for a blank one. Throws files::FormatError for what is not a number.
   [[nodiscard]] std::optional<double> number_or_blank(std::size_t place) const;
   [[nodiscard]] double number(std::size_t place) const;
   [[nodiscard]] int integer(std::size_t place) const;
-  /// The modified Julian day of a date as 2026-11-25.
+  /// Returns the modified Julian day of a date as 2026-11-25.
   [[nodiscard]] int mjd_of_date(std::size_t place) const;
 
  private:

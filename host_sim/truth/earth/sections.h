@@ -12,16 +12,17 @@ namespace vbar::truth {
 /// Goes along with the lines of a file; at most one section is open.
 class Sections {
  public:
-  /// `names`: those that the file may have.
+  /// Makes a reader; `names` are those that the file may have.
   explicit Sections(std::span<const std::string_view> names) : names_(names) {}
 
-  /// Whether the line begins or ends a section. Throws files::FormatError for one within another and unknown names.
+  /// Returns whether the line begins or ends a section. Throws files::FormatError for one within another and unknown
+  /// names.
   bool take(const files::TextLines& lines);
 
-  /// The place of the open section among the names.
+  /// Returns the place of the open section among the names.
   [[nodiscard]] std::optional<std::size_t> open() const { return open_; }
 
-  /// At the end of the file. Throws files::FormatError if a section is open.
+  /// Checks, at the end of the file, that no section is open. Throws files::FormatError if a section is open.
   void check_end(const files::TextLines& lines) const;
 
  private:

@@ -17,7 +17,7 @@
 namespace vbar::truth {
 namespace {
 
-constexpr int kSlotsPerDay = 8;  // of three hours
+constexpr int kSlotsPerDay = 8;  // slots of three hours
 constexpr fsw::Duration kSlot = fsw::duration_of_seconds(10800);
 constexpr int kSlotsOfMemory = 19;  // 57 hours
 constexpr std::size_t kFewestDays = 4;

@@ -29,7 +29,7 @@ class SpaceWeather {
   struct Day {
     int mjd_utc = 0;
     Kind kind = Kind::kObserved;
-    int line = 0;                ///< of the file
+    int line = 0;                ///< line in the file
     std::array<double, 8> ap{};  ///< three-hourly, from 00-03 to 21-24 UTC
     double ap_daily = 0.0;
     double f107 = 0.0;          ///< observed, 1e-22 W/m^2/Hz
@@ -40,20 +40,22 @@ class SpaceWeather {
   /// Throws std::runtime_error naming file, line and what is accepted.
   static SpaceWeather load(const std::filesystem::path& file);
 
-  /// `days` in order, without gaps, at least four of them: std::invalid_argument otherwise.
+  /// Makes a series of `days`: in order, without gaps, at least four of them. Throws std::invalid_argument for other
+  /// days.
   explicit SpaceWeather(std::vector<Day> days);
 
-  /// The same indices at any time.
+  /// Makes a series with constant indices.
   static SpaceWeather constant(double f107, double ap);
 
-  /// Of the days whose values a flight between two instants uses, the first of a kind; null if there is none.
+  /// Returns the first day of a kind among the days whose values a flight between two instants uses; null if there is
+  /// none.
   [[nodiscard]] const Day* find_first(Kind kind, fsw::GpsTime begin, fsw::GpsTime end) const;
 
-  /// The indices that hold at `time`. F10.7 is the day before's. Throws std::out_of_range, naming date and range, where
-  /// the series lacks the day itself, the day before or, three-hourly, the 57 hours before.
+  /// Returns the indices that hold at `time`. F10.7 is the day before's. Throws std::out_of_range, naming date and
+  /// range, where the series lacks the day itself, the day before or, three-hourly, the 57 hours before.
   SolarIndices indices_at(fsw::GpsTime time, GeomagneticIndex geomagnetic_index) const;
 
-  /// The first instant after `time` at which indices change: 0h UTC, and three-hourly 3h, 6h, ... UTC too.
+  /// Returns the first instant after `time` at which indices change: 0h UTC, and three-hourly 3h, 6h, ... UTC too.
   static fsw::GpsTime next_change_after(fsw::GpsTime time, GeomagneticIndex geomagnetic_index);
 
  private:

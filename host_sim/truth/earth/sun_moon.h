@@ -29,12 +29,12 @@ struct SunMoon {
 
 inline constexpr double kAstronomicalUnit = 149597870700.0;  ///< m, by definition (IAU 2012 B2)
 
-/// The full series, some 50 us a call. Made for 1900 to 2100, which is ERFA's range for the Earth.
+/// Computes the full series, some 50 us a call. Made for 1900 to 2100, which is ERFA's range for the Earth.
 SunMoon sun_moon_series(JulianDate tt);
 
-/// The same by interpolation between nodes: error below 1 m for the Moon and 0.1 m for the Sun (held by its test).
-/// Nodes lie at fixed instants, so the result depends on the date only, never on earlier calls.
-/// Not thread-safe (nodes are cached): one object per thread.
+/// Interpolates sun_moon_series() between nodes: error below 1 m for the Moon and 0.1 m for the Sun (held by its test).
+/// Nodes lie at fixed instants, so the result depends on the date only, never on earlier calls. Not thread-safe (nodes
+/// are cached): one object per thread.
 class SunMoonInterpolator {
  public:
   SunMoon at(JulianDate tt);

@@ -34,7 +34,7 @@ struct LeapSeconds {
   double tai_minus_utc_s = 0.0;
 };
 
-constexpr int kFirstYear = 1972;  // of leap seconds
+constexpr int kFirstYear = 1972;  // first year of leap seconds
 constexpr int kLastYear = 2200;   // GPS time in nanoseconds ends in 2272; missions reach beyond their epoch
 
 // ERFA's table, asked once: each of its answers costs a conversion to the calendar and back. Leap seconds begin with a
@@ -67,7 +67,7 @@ const LeapSeconds& leap_seconds_at(int mjd_utc) {
                   text));
 }
 
-// Reads fields of decimal digits at fixed places and refuses anything else.
+// Reads fields of decimal digits at fixed places and rejects anything else.
 class FieldReader {
  public:
   explicit FieldReader(std::string_view text) : text_(text), rest_(text) {}

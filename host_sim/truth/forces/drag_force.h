@@ -27,9 +27,9 @@ namespace vbar::truth {
 
 class DragForce final : public Force {
  public:
-  /// `tables` and `space_weather` are shared between spacecraft and must not be null; `epoch` is what ForceInput's
-  /// seconds count from. Throws std::invalid_argument unless mass, drag area and drag coefficient are above zero and
-  /// finite; std::out_of_range if the epoch is outside the space weather data.
+  /// Makes the force. `tables` and `space_weather` are shared between spacecraft and must not be null; `epoch` is what
+  /// ForceInput's seconds count from. Throws std::invalid_argument unless mass, drag area and drag coefficient are
+  /// above zero and finite; std::out_of_range if the epoch is outside the space weather data.
   DragForce(const SurfaceProperties& spacecraft, std::shared_ptr<const Nrlmsise00Tables> tables,
             std::shared_ptr<const SpaceWeather> space_weather, GeomagneticIndex geomagnetic_index, fsw::GpsTime epoch);
 
@@ -43,7 +43,7 @@ class DragForce final : public Force {
   /// Throws std::out_of_range outside the space weather data.
   void enter_interval(double seconds) override;
 
-  /// The air at a state, with the indices of the interval entered last.
+  /// Returns the air at a state, with the indices of the interval entered last.
   AtmosphereState atmosphere_at(const ForceInput& input);
 
  private:
@@ -54,7 +54,7 @@ class DragForce final : public Force {
   std::shared_ptr<const SpaceWeather> space_weather_;
   GeomagneticIndex geomagnetic_index_;
   fsw::GpsTime epoch_;
-  // Of the interval entered last.
+  // Indices and day of the interval entered last.
   SolarIndices indices_;
   int day_of_year_ = 1;
   double midnight_s_ = 0.0;  // after the epoch

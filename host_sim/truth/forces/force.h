@@ -30,31 +30,32 @@ class Force {
  public:
   virtual ~Force() = default;
 
-  /// As in the mission file and in tables: "drag", "radiation_pressure", ...
+  /// Returns the name as in the mission file and in tables: "drag", "radiation_pressure", ...
   virtual std::string_view name() const = 0;
 
-  /// Acceleration, m/s^2, in ECI, beside that of the Earth's point mass: a function of the input and of the sides and
-  /// the interval set, not of earlier calls (a table of forces evaluates them at its own instants).
+  /// Returns the acceleration, m/s^2, in ECI, beside that of the Earth's point mass: a function of the input and of the
+  /// sides and the interval set, not of earlier calls (a table of forces evaluates them at its own instants).
   virtual fsw::Vector3 acceleration_eci(const ForceInput& input) = 0;
 
-  /// Whether the input must hold the Sun and the Moon.
+  /// Returns whether the input must hold the Sun and the Moon.
   virtual bool needs_sun_and_moon() const { return false; }
 
-  /// How many edges it has, and the function whose zero edge `index` is.
+  /// Returns the number of its edges, and the function whose zero edge `index` is.
   virtual int edge_count() const { return 0; }
   virtual double edge(int /*index*/, const ForceInput& /*input*/) const { return 1.0; }
 
-  /// From here on (until the next call) the motion is on this side of the edge: edge() positive, or not.
+  /// Sets the side: from here on (until the next call) the motion is on this side of the edge: edge() positive, or not.
   virtual void set_side(int /*index*/, bool /*positive*/) {}
 
-  /// The longest step, s, over which it is smooth enough from here on, on the sides that were set: queried at the start
-  /// and whenever a side changes. Infinity: the integrator's own step control is enough.
+  /// Returns the longest step, s, over which it is smooth enough from here on, on the sides that were set: queried at
+  /// the start and whenever a side changes. Infinity: the integrator's own step control is enough.
   virtual double longest_step(const ForceInput& /*input*/) const { return std::numeric_limits<double>::infinity(); }
 
-  /// The first date (seconds after the epoch) after `seconds` at which it jumps by itself.
+  /// Returns the first date (seconds after the epoch) after `seconds` at which it jumps by itself.
   virtual double next_jump_after(double /*seconds*/) const { return std::numeric_limits<double>::infinity(); }
 
-  /// The motion (re)starts at `seconds`: until the next jump the force is that of the interval that begins here.
+  /// Enters the interval in which the motion (re)starts at `seconds`: until the next jump the force is that of the
+  /// interval that begins here.
   virtual void enter_interval(double /*seconds*/) {}
 };
 

@@ -21,12 +21,12 @@ struct GravityCoefficients {
 
   static std::size_t index(int n, int m) { return static_cast<std::size_t>(n) * (n + 1) / 2 + m; }
 
-  /// Coefficients of one degree and order, 0 if n is above the degree.
+  /// Returns the coefficients of one degree and order, 0 if n is above the degree.
   double c_nm(int n, int m) const { return n <= degree ? c[index(n, m)] : 0.0; }
   double s_nm(int n, int m) const { return n <= degree ? s[index(n, m)] : 0.0; }
 };
 
-/// Reads the model up to `degree` from a file in any of gravity_formats.h. That of data/gravity: '#' comments; lines
+/// Reads the model up to `degree` from a file in any of gravity_formats(). That of data/gravity: '#' comments; lines
 /// "model", "gm_m3ps2", "radius_m", "max_degree", "tide_system" with a value; "coefficients"; then "n m C S" for every
 /// 0 <= m <= n <= max_degree in order; "end".
 /// Throws std::runtime_error, naming file, line and what is expected, if the file is damaged or truncated (the whole

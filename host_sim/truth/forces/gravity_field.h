@@ -14,12 +14,11 @@
 
 namespace vbar::truth {
 
-/// Immutable once made; may be shared between threads.
+/// Field of a gravity model. Immutable once made; may be shared between threads.
 class GravityField {
  public:
-  /// The field up to `degree` and `order` (0 <= order <= degree <= that of the coefficients): std::invalid_argument
-  /// otherwise.
-  /// `sum` chooses the build of the inner loop; all give the same bits.
+  /// Makes the field up to `degree` and `order` (0 <= order <= degree <= that of the coefficients). Throws
+  /// std::invalid_argument for other degrees. `sum` chooses the build of the inner loop; all give the same bits.
   GravityField(const GravityCoefficients& coefficients, int degree, int order,
                HarmonicSummation sum = fastest_harmonic_summation());
 
@@ -28,10 +27,11 @@ class GravityField {
   int degree() const { return degree_; }
   int order() const { return order_; }
 
-  /// Acceleration without that of the point mass, m/s^2, in ITRF, at a position (m, not the centre) in ITRF.
+  /// Returns the acceleration without that of the point mass, m/s^2, in ITRF, at a position (m, not the centre) in
+  /// ITRF.
   fsw::Vector3 perturbation_itrf(const fsw::Vector3& position_itrf) const;
 
-  /// Whole gravitational acceleration, m/s^2, in ITRF.
+  /// Returns the whole gravitational acceleration, m/s^2, in ITRF.
   fsw::Vector3 acceleration_itrf(const fsw::Vector3& position_itrf) const;
 
  private:

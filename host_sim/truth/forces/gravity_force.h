@@ -10,7 +10,7 @@ namespace vbar::truth {
 
 class GravityForce final : public Force {
  public:
-  /// `field` is shared between spacecraft and must not be null.
+  /// Makes the force; `field` is shared between spacecraft and must not be null.
   explicit GravityForce(std::shared_ptr<const GravityField> field);
 
   std::string_view name() const override { return "gravity"; }

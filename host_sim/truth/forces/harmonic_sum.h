@@ -35,11 +35,11 @@ using HarmonicSummation = HarmonicSum (*)(const HarmonicSeries&, const HarmonicP
 
 HarmonicSum sum_harmonics_portable(const HarmonicSeries& series, const HarmonicPoint& point);
 
-/// The fastest build this processor runs.
+/// Returns the fastest build this processor runs.
 HarmonicSummation fastest_harmonic_summation();
 
 #if defined(__x86_64__)
-/// Only where the processor has AVX2.
+/// Sums with AVX2, only where the processor has AVX2.
 HarmonicSum sum_harmonics_avx2(const HarmonicSeries& series, const HarmonicPoint& point);
 #endif
 

@@ -1,6 +1,6 @@
 #pragma once
 // A gravity field of degrees 2 to 4 whose coefficients change from call to call, as those of the tides do: small enough
-// to be summed term by term, where gravity_field.h prepares its series once.
+// to be summed term by term, where GravityField prepares its series once.
 
 #include "fsw/core/types.h"
 
@@ -14,8 +14,8 @@ struct LowDegreeCoefficients {
   double s[kDegree + 1][kDegree + 1] = {};
 };
 
-/// Acceleration, m/s^2 in ITRF, at a position (m, in ITRF, not the centre) in the field of `coefficients` with
-/// gravitational parameter `gm` (m^3/s^2) and reference radius `radius` (m).
+/// Returns the acceleration, m/s^2 in ITRF, at a position (m, in ITRF, not the centre) in the field of `coefficients`
+/// with gravitational parameter `gm` (m^3/s^2) and reference radius `radius` (m).
 fsw::Vector3 acceleration_itrf(const LowDegreeCoefficients& coefficients, double gm, double radius,
                                const fsw::Vector3& position_itrf);
 

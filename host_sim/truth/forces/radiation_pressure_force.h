@@ -16,7 +16,8 @@ inline constexpr double kSolarPressure = kSolarIrradiance / kSpeedOfLight;
 
 /// Acceleration away from the Sun: (1 au / distance)^2 * kSolarPressure * C_R A / m * sunlit fraction.
 ///
-/// Its edges: the cylinder's one; of the cone the penumbra's outer rim (0) and inner rim (1); none without a shadow.
+/// Its edges are the cylinder's one, or the outer rim (0) and inner rim (1) of the cone's penumbra; none without a
+/// shadow.
 ///
 /// In the penumbra the light varies with the power 3/2 of the distance from the rim, where a method of order 5 loses
 /// its order: there its steps are no longer than it takes to orbit through an eighth of the Sun's diameter (1.1 s in a
@@ -35,7 +36,7 @@ class RadiationPressureForce final : public Force {
 
   double longest_step(const ForceInput& input) const override;
 
-  /// Part of the Sun's light that arrives, 0 to 1, on the side of the edges that was set.
+  /// Returns the part of the Sun's light that arrives, 0 to 1, on the side of the edges that was set.
   double sunlit_fraction(const ForceInput& input) const;
 
  private:

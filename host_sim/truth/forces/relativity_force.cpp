@@ -14,8 +14,8 @@ constexpr double kC2 = 299792458.0 * 299792458.0;  // speed of light, squared, m
 constexpr double kEarthSpin = 9.8e8;  // the Earth's angular momentum per mass, m^2/s: IERS Conventions 2010, ch. 10
 
 /// The Earth's orbital angular momentum per mass about the Sun, m^2/s, in GCRF: Kepler's sqrt(GM a (1 - e^2)) with a =
-/// 1 au and e = 0.0167, along the pole of the ecliptic of J2000 (obliquity 84381.406", IAU 2006). It stands for the
-/// cross product of distance and velocity, which the Moon perturbs by 4e-4.
+/// 1 au and e = 0.0167, along the pole of the ecliptic of J2000 (obliquity 84381.406", IAU 2006). It replaces the cross
+/// product of distance and velocity, which the Moon perturbs by 4e-4.
 fsw::Vector3 earth_orbital_angular_momentum() {
   constexpr double kEccentricity = 0.0167;
   constexpr double kObliquity = 84381.406 / 3600.0 * 3.14159265358979323846 / 180.0;

@@ -11,7 +11,7 @@ namespace vbar::truth {
 
 class RelativityForce final : public Force {
  public:
-  /// `gm`: the Earth's, m^3/s^2.
+  /// Makes the force; `gm` is the Earth's, m^3/s^2.
   explicit RelativityForce(double gm) : gm_(gm) {}
 
   std::string_view name() const override { return "relativity"; }
@@ -22,14 +22,14 @@ class RelativityForce final : public Force {
   double gm_;
 };
 
-/// The three parts, m/s^2 in ECI, at a position (m) and velocity (m/s) in ECI.
+/// Return the three parts, m/s^2 in ECI, at a position (m) and velocity (m/s) in ECI.
 fsw::Vector3 schwarzschild_acceleration(double gm, const fsw::Vector3& position_eci, const fsw::Vector3& velocity_eci);
 
-/// `spin_axis_eci`: unit vector to the Earth's north pole.
+/// `spin_axis_eci` is the unit vector to the Earth's north pole.
 fsw::Vector3 lense_thirring_acceleration(double gm, const fsw::Vector3& spin_axis_eci, const fsw::Vector3& position_eci,
                                          const fsw::Vector3& velocity_eci);
 
-/// `sun_distance`: from the Earth, m.
+/// `sun_distance` is that from the Earth, m.
 fsw::Vector3 de_sitter_acceleration(double sun_distance, const fsw::Vector3& velocity_eci);
 
 }  // namespace vbar::truth

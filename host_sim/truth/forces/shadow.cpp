@@ -19,7 +19,7 @@ Vector3 stretched(const Vector3& v, const EarthFigure& earth) {
 struct PlaneCircles {
   double sun_radius;
   double earth_radius;
-  double separation;  ///< of the centres
+  double separation;  ///< distance of the centres
   double gap;         ///< separation - earth_radius, without cancellation: the Earth's limb nearest to the Sun's centre
 };
 
@@ -68,7 +68,7 @@ double penumbra_sunlit_fraction(const SkyDisks& disks) {
 }
 
 double inner_sunlit_fraction(const SkyDisks& disks) {
-  // The same circles as in the penumbra, so that nothing jumps at the rim between them.
+  // These are the circles of the penumbra, so that nothing jumps at the rim between them.
   const PlaneCircles circles = stereographic(disks);
   const double ratio = circles.earth_radius / circles.sun_radius;
   return std::max(0.0, 1.0 - ratio * ratio);

@@ -19,34 +19,37 @@ struct EarthFigure {
   double flattening = 1.0 / 298.257223563;  ///< WGS 84; 0 is a sphere
 };
 
-/// Sunlight arriving parallel: positive in the light, zero at the edge of the Earth's shadow, negative in it, in metres
-/// along the direction to the Sun, and smooth. `position` (outside the Earth) and `sun`: geocentric, m, axes of GCRF.
+/// Returns the edge function of the shadow in sunlight that arrives parallel: positive in the light, zero at the edge
+/// of the Earth's shadow, negative in it, in metres along the direction to the Sun, and smooth. `position` (outside the
+/// Earth) and `sun`: geocentric, m, axes of GCRF.
 double cylindrical_shadow_edge(const fsw::Vector3& position, const fsw::Vector3& sun, const EarthFigure& earth);
 
 /// The Sun and the Earth as disks in the spacecraft's sky, rad.
 struct SkyDisks {
   double sun_radius = 0.0;
   double earth_radius = 0.0;
-  double separation = 0.0;  ///< of their centres
+  double separation = 0.0;  ///< separation of their centres
 };
 
 SkyDisks sky_disks(const fsw::Vector3& position, const fsw::Vector3& sun, const EarthFigure& earth);
 
-/// Positive where the Sun is clear of the Earth, zero at the penumbra's outer rim; rad.
+/// Returns an angle that is positive where the Sun is clear of the Earth, zero at the penumbra's outer rim; rad.
 inline double penumbra_outer_edge(const SkyDisks& disks) {
   return disks.separation - (disks.earth_radius + disks.sun_radius);
 }
 
-/// Zero at the penumbra's inner rim, negative inside: the umbra near the Earth, where the Sun is hidden, and beyond its
-/// apex (1.4 million km) the antumbra, where the Earth stands wholly before the Sun; rad.
+/// Returns zero at the penumbra's inner rim and a negative value inside: in the umbra near the Earth, where the Sun is
+/// hidden, and beyond its apex (1.4 million km) in the antumbra, where the Earth is wholly before the Sun; rad.
 double penumbra_inner_edge(const SkyDisks& disks);
 
-/// Uncovered part of the Sun's disk where the rims of the disks cross, 0 to 1: the overlap of two circles on the sky,
-/// exact (in the stereographic projection about the Sun's centre both stay circles; its scale varies by 2e-5 over the
-/// Sun's disk). Outside of that the value at the rim crossed. The Sun's limb is taken as bright as its centre.
+/// Returns the uncovered part of the Sun's disk where the rims of the disks cross, 0 to 1: the overlap of two circles
+/// on the sky, exact (in the stereographic projection about the Sun's centre both stay circles; its scale varies by
+/// 2e-5 over the Sun's disk). Outside of that the value at the rim crossed. The Sun's limb is taken as bright as its
+/// centre.
 double penumbra_sunlit_fraction(const SkyDisks& disks);
 
-/// The same inside the inner rim: 0 in the umbra, 1 less the ratio of the disks' areas in the antumbra.
+/// Returns the sunlit fraction inside the inner rim: 0 in the umbra, 1 less the ratio of the disks' areas in the
+/// antumbra.
 double inner_sunlit_fraction(const SkyDisks& disks);
 
 }  // namespace vbar::truth

@@ -8,7 +8,7 @@ namespace vbar::truth {
 struct TidalLine {
   int doodson;          ///< its Doodson number, without the comma
   signed char n[5];     ///< multipliers of Delaunay's l, l', F, D, Omega: argument m (GMST + pi) - sum n_i F_i
-  double in_phase;      ///< of the normalised coefficients of degree 2 and the table's order, 1e-12
+  double in_phase;      ///< amplitude of the normalised coefficients of degree 2 and the table's order, 1e-12
   double out_of_phase;  ///< the same
 };
 

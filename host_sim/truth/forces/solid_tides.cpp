@@ -20,7 +20,7 @@ constexpr double kArcsec = kPi / 180.0 / 3600.0;
 /// IERS Conventions 2010, table 6.3, anelastic Earth. k_30 to k_32 are 0.093, k_33 is 0.094, all real.
 struct LoveNumber {
   double real, imaginary;
-  double plus;  ///< of degree 4, raised by the tide of degree 2
+  double plus;  ///< response of degree 4, raised by the tide of degree 2
 };
 constexpr LoveNumber kLove2[3] = {
     {0.30190, 0.0, -0.00089}, {0.29830, -0.00144, -0.00080}, {0.30102, -0.00130, -0.00057}};

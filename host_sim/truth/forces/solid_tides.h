@@ -16,12 +16,12 @@
 
 namespace vbar::truth {
 
-/// The part of the permanent tide, the mean of the tide over time, in C20 of a gravity model: its deformation
-/// (zero tide) or none of it (tide free).
+/// Part of the permanent tide, the mean of the tide over time, that C20 of a gravity model contains: its deformation
+/// (zero tide) or nothing (tide free).
 enum class TideSystem { kZeroTide, kTideFree };
 
-/// The tide system of a coefficient file: "zero_tide" or "tide_free". Throws std::invalid_argument, naming both, for
-/// another.
+/// Returns the tide system of a coefficient file: "zero_tide" or "tide_free". Throws std::invalid_argument, naming
+/// both, for another.
 TideSystem tide_system_named(std::string_view name);
 
 /// A body that raises tides.
@@ -34,14 +34,14 @@ struct TidalBody {
 /// changed by the degree-2 tide through the Earth's flattening. `radius`: the gravity model's reference radius, m.
 void add_love_number_response(const TidalBody& body, double radius, LowDegreeCoefficients& change);
 
-/// Step 1's mean of C20 over all time (section 6.2.2, eq. 6.14): A0 H0 k20 = -4.2e-9. Step 1 contains the whole tide,
-/// mean included; a zero-tide C20 contains the deformation of the mean already, so it is subtracted there, and counted
-/// once.
+/// Returns step 1's mean of C20 over all time (section 6.2.2, eq. 6.14): A0 H0 k20 = -4.2e-9. Step 1 contains the whole
+/// tide, mean included; a zero-tide C20 contains the deformation of the mean already, so it is subtracted there, and
+/// counted once.
 double permanent_tide_c20();
 
-/// Step 2. The sums over the tables' 71 lines are e^(i m (GMST + pi)) times sums that change over days; those are kept
-/// at hours of TT and interpolated by cubics: error under 1e-18, some 1e-5 of the tables' last digit. The result
-/// depends on the date only. Not thread-safe: one object per thread.
+/// Tides of step 2. The sums over the tables' 71 lines are e^(i m (GMST + pi)) times sums that change over days; those
+/// are kept at hours of TT and interpolated by cubics: error under 1e-18, some 1e-5 of the tables' last digit. The
+/// result depends on the date only. Not thread-safe: one object per thread.
 class FrequencyDependentTides {
  public:
   /// Adds the corrections of an instant with Greenwich mean sidereal time `gmst`, rad.

@@ -11,11 +11,11 @@
 
 namespace vbar::truth {
 
-/// One object per spacecraft, as it caches the sums of step 2.
+/// Force of the tides: one object per spacecraft, as it caches the sums of step 2.
 class SolidTidesForce final : public Force {
  public:
-  /// `gm` (m^3/s^2), `radius` (m) and `tide_system` of the gravity model that it goes with; `orientation` of the days
-  /// to come must not be null.
+  /// Makes the force from `gm` (m^3/s^2), `radius` (m) and `tide_system` of the gravity model that it goes with;
+  /// `orientation` of the days to come must not be null.
   SolidTidesForce(double gm, double radius, TideSystem tide_system, fsw::GpsTime epoch,
                   std::shared_ptr<const EarthOrientationSeries> orientation);
 
@@ -25,7 +25,7 @@ class SolidTidesForce final : public Force {
   /// Throws std::out_of_range outside the Earth orientation data.
   fsw::Vector3 acceleration_eci(const ForceInput& input) override;
 
-  /// The change of the gravity model's coefficients that makes the acceleration.
+  /// Returns the change of the gravity model's coefficients that makes the acceleration.
   LowDegreeCoefficients coefficients(const ForceInput& input);
 
  private:

@@ -8,7 +8,7 @@ struct SurfaceProperties {
   double drag_area_m2 = 0.0;
   double drag_coefficient = 0.0;
   double radiation_area_m2 = 0.0;
-  double radiation_coefficient = 0.0;  ///< C_R: 1 absorbs all light, 2 reflects all of it straight back
+  double radiation_coefficient = 0.0;  ///< C_R: 1 absorbs all light, 2 reflects all light straight back
 };
 
 }  // namespace vbar::truth

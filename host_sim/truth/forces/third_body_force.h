@@ -10,10 +10,10 @@ namespace vbar::truth {
 inline constexpr double kSunGm = 1.32712440041e20;
 inline constexpr double kMoonGm = 4.902800076e12;
 
-/// Attraction of a distant point mass on a body at `position` less that on the origin, m/s^2; both positions (m) from
-/// the same origin and along the same axes. By Battin (1999), section 8.4: no difference of nearly equal vectors is
-/// formed, so the result is accurate to rounding however small the position is. Not defined where the two coincide or
-/// the third body is at the origin.
+/// Returns the attraction of a distant point mass on a body at `position` less that on the origin, m/s^2; both
+/// positions (m) from the same origin and along the same axes. By Battin (1999), section 8.4: no difference of nearly
+/// equal vectors is formed, so the result is accurate to rounding however small the position is. Not defined where the
+/// two coincide or the third body is at the origin.
 fsw::Vector3 third_body_acceleration(const fsw::Vector3& position, const fsw::Vector3& third_body, double gm);
 
 class ThirdBodyForce final : public Force {

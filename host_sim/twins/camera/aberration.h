@@ -9,8 +9,8 @@ namespace vbar::twins::camera {
 
 inline constexpr double kLightSpeed = 299792458.0;  ///< m/s
 
-/// Unit vector; `direction` unit, `velocity` of the observer in the same axes, m/s, below that of light. Special
-/// relativity (Klioner 2003, equation 10); the Sun's field would add 0.4 milliarcsecond.
+/// Returns the apparent direction as a unit vector; `direction` unit, `velocity` of the observer in the same axes, m/s,
+/// below that of light. Special relativity (Klioner 2003, equation 10); the Sun's field would add 0.4 milliarcsecond.
 inline fsw::Vector3 apparent_direction(const fsw::Vector3& direction, const fsw::Vector3& velocity) {
   const fsw::Vector3 beta = velocity / kLightSpeed;
   const double inverse_gamma = std::sqrt(1.0 - beta.squaredNorm());

@@ -7,7 +7,8 @@ namespace vbar::twins::camera {
 
 struct BloomingSettings {
   double full_well_electrons = 0.0;
-  double spilled_fraction = 0.0;  ///< of the charge beyond the full well: to the four neighbours; the rest is drained
+  double spilled_fraction =
+      0.0;  ///< share of the charge beyond the full well that spills to the four neighbours; the rest is drained
 };
 
 /// Spills and drains what exceeds the full well in `charge` (rows of `width`, electrons), in rounds, each of all pixels

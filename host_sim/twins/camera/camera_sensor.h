@@ -1,6 +1,6 @@
 #pragma once
 // A camera as a packet source: an image every period, taken on a thread of its own while the simulation goes on,
-// because it leaves the camera only when it has been read out. An ImageTaker produces it (image_taker.h).
+// because it leaves the camera only when it has been read out. An ImageTaker produces it (image_maker.h).
 
 #include <atomic>
 #include <memory>
@@ -25,15 +25,15 @@ class CameraSensor final : public PacketSource {
     CameraMount mount;
     engine::Cadence images{fsw::GpsTime{}, fsw::duration_of_seconds(60)};  ///< middles of the exposures
     fsw::Duration readout;  ///< >= 0: from the middle of an exposure until its packets leave
-    /// Of the first images, if commands may change it; otherwise it is always that of the settings.
+    /// Exposure of the first images, if commands may change it; without a value it is always that of the settings.
     std::optional<double> first_exposure_s = std::nullopt;
     bool sends_packets = true;                                    ///< false: the images are in the log only
     std::chrono::milliseconds timeout = std::chrono::minutes(5);  ///< on the wall, for one image
   };
 
-  /// Throws std::invalid_argument if a recipe cannot hold the models of the mount (image_recipe.h).
+  /// Throws std::invalid_argument if a recipe cannot hold the models of the mount (logged_image.h).
   CameraSensor(const Settings& settings, std::unique_ptr<ImageTaker> taker);
-  /// The digital camera. `renderer` is called on the sensor's own thread.
+  /// Makes the digital camera. `renderer` is called on the sensor's own thread.
   CameraSensor(const Settings& settings, Renderer renderer)
       : CameraSensor(settings, std::make_unique<ImageMaker>(settings.image, std::move(renderer))) {}
 
@@ -46,19 +46,19 @@ class CameraSensor final : public PacketSource {
 
   [[nodiscard]] std::optional<fsw::GpsTime> next_epoch(fsw::GpsTime from) const override;
 
-  /// Begins the image, whose packets are `pending`. If the taker is reproducible, `recipe` regenerates them; otherwise
-  /// they come with a recording, and `recipe` is the exposure of which the digital twin makes an image too. kFailed if
-  /// the truth lacks the spacecraft or its attitude.
+  /// Begins the image, whose packets are `pending`. If the taker is reproducible, `recipe` regenerates them. If it is
+  /// not, they come with a recording, and `recipe` is the exposure of which the digital twin makes an image too.
+  /// kFailed if the truth lacks the spacecraft or its attitude.
   Measurement measure(const TruthSnapshot& truth) override;
 
-  /// Of the exposure of its images.
+  /// Applies a command of the exposure of its images.
   void command(const fsw::packets::PacketView& packet, fsw::GpsTime effective) override;
 
   [[nodiscard]] bool truth_is_compared() const override { return settings_.sends_packets; }
   [[nodiscard]] std::chrono::milliseconds wait_limit() const override { return settings_.timeout; }
 
-  /// "images" taken, "packing_s" of the wall clock spent on their packets, and the figures of the taker. Of one that is
-  /// not reproducible also "recording_s" spent on recordings, and "recorded_bytes".
+  /// Returns the number of "images" taken, the "packing_s" of the wall clock spent on their packets, and the figures of
+  /// the taker. A taker that is not reproducible adds the "recording_s" spent on recordings, and "recorded_bytes".
   [[nodiscard]] std::vector<Note> statistics() const override;
 
  private:

@@ -18,11 +18,11 @@ struct Region {
 struct OpticsSettings {
   double focal_length_mm = 35.0;
   double f_number = 1.9;
-  double transmission = 0.9;                               ///< of all glass together
+  double transmission = 0.9;                               ///< transmission of all glass together
   std::array<double, 2> principal_point_px{959.5, 599.5};  ///< an integer is the centre of a pixel
   std::array<double, 5> distortion{};                      ///< Brown-Conrady k1, k2, p1, p2, k3, as OpenCV orders them
-  double point_spread_sigma_px = 0.8;                      ///< of the Gaussian core, before the pixel's own width
-  double halo_fraction = 0.01;  ///< of a point's light, in a wide second Gaussian (scatter in the lens)
+  double point_spread_sigma_px = 0.8;                      ///< sigma of the Gaussian core, before the pixel's own width
+  double halo_fraction = 0.01;  ///< share of a point's light in a wide second Gaussian (scatter in the lens)
   double halo_sigma_px = 4.0;
   double vignetting = 0.15;              ///< light lost in the corners of the detector, as the radius to the fourth
   double sun_exclusion_deg = 30.0;       ///< closer to the boresight the Sun illuminates the baffle: stray light
@@ -35,7 +35,7 @@ struct DetectorSettings {
   double quantum_efficiency = 0.7;  ///< at the peak of the response; photometry.h
   double full_well_electrons = 32000.0;
   double gain_dn_per_electron = 0.125;
-  int bits = 12;  ///< of a pixel on the link, 8 or 12
+  int bits = 12;  ///< bits of a pixel on the link, 8 or 12
   double offset_dn = 64.0;
   double read_noise_electrons = 7.0;
   double dark_electrons_per_s = 5.0;            ///< a pixel
@@ -44,7 +44,7 @@ struct DetectorSettings {
   int hot_pixels = 20;                          ///< on the region that is read; places and sizes from the seed
   double hot_pixel_electrons_per_s = 20000.0;   ///< mean of an exponential distribution
   double blooming_fraction =
-      0.02;  ///< of the charge beyond the full well: spills to the neighbours; the rest is drained
+      0.02;  ///< share of the charge beyond the full well that spills to the neighbours; the rest is drained
 };
 
 struct CameraSettings {
@@ -53,16 +53,16 @@ struct CameraSettings {
   Region region{710, 200, 500, 800};  ///< that is read and crosses the link
   double exposure_s = 0.2;
   double zero_magnitude_photons =
-      3.1e10;  ///< of a star of V = 0, B-V = 0 outside the atmosphere, 1/(m^2 s); photometry.h
-  std::filesystem::path star_catalogue_file{"stars/hipparcos_v8.csv"};  ///< seen from the data folder; star_catalogue.h
+      3.1e10;  ///< flux of a star of V = 0, B-V = 0 outside the atmosphere, 1/(m^2 s); photometry.h
+  std::filesystem::path star_catalogue_file{"stars/hipparcos_v8.csv"};  ///< relative to the data folder; star_sky.h
 
   [[nodiscard]] double focal_length_px() const { return 1e3 * optics.focal_length_mm / detector.pixel_pitch_um; }
-  /// Of the entrance pupil, m^2.
+  /// Area of the entrance pupil, m^2.
   [[nodiscard]] double aperture_m2() const {
     const double radius_m = 0.5e-3 * optics.focal_length_mm / optics.f_number;
     return 3.14159265358979323846 * radius_m * radius_m;
   }
-  /// Photo-electrons on the detector per photon/m^2 at the lens, on axis.
+  /// Returns the photo-electrons on the detector per photon/m^2 at the lens, on axis.
   [[nodiscard]] double electrons_per_photon_m2() const {
     return aperture_m2() * optics.transmission * detector.quantum_efficiency;
   }

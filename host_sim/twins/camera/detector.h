@@ -2,7 +2,7 @@
 // The detector: from expected photo-electrons to the numbers that are read.
 //
 //   charge = Poisson(response * photo-electrons + dark electrons)      shot noise of light and dark current together
-//   charge beyond the full well spills to the neighbours or is drained (blooming.h)
+//   charge beyond the full well spills to the neighbours or is drained (bloom())
 //   DN     = round(offset + gain * (charge + read noise)), cut off at 0 and 2^bits - 1
 //
 // Response and dark current are of the pixel (fixed pattern, hot pixels); their values are drawn from the seed and are
@@ -26,17 +26,17 @@ struct HotPixel {
   double electrons_per_s = 0.0;
 };
 
-/// Places and sizes of the hot pixels of a region, from the seed.
+/// Draws places and sizes of the hot pixels of a region, from the seed.
 [[nodiscard]] std::vector<HotPixel> draw_hot_pixels(const DetectorSettings& detector, const Region& region,
                                                     std::uint64_t seed, std::string_view camera_name);
 
 class Detector {
  public:
-  /// The region of `settings` must not be empty. `camera_name` names the detector's random numbers.
+  /// Makes a detector. The region of `settings` must not be empty. `camera_name` names the detector's random numbers.
   Detector(const CameraSettings& settings, std::uint64_t seed, std::string_view camera_name);
 
-  /// A detector whose hot pixels are known, so that every region of it has the same ones: those of `hot_pixels` that
-  /// are in the region.
+  /// Makes a detector whose hot pixels are known, so that all its regions have the same ones: those of `hot_pixels`
+  /// that are in the region.
   Detector(const CameraSettings& settings, std::uint64_t seed, std::string_view camera_name,
            std::span<const HotPixel> hot_pixels);
 
@@ -47,7 +47,7 @@ class Detector {
               std::optional<double> duration_s = std::nullopt);
 
   [[nodiscard]] std::span<const HotPixel> hot_pixels() const { return hot_pixels_; }
-  /// Lost by blooming in the last exposure, electrons.
+  /// Returns the charge lost by blooming in the last exposure, electrons.
   [[nodiscard]] double drained_electrons() const { return drained_electrons_; }
 
  private:

@@ -20,7 +20,7 @@ Vector3 stretched(const Vector3& eci) {
   return {eci.x(), eci.y(), eci.z() * kStretch};
 }
 
-/// Outward normal of the ellipsoid at a stretched point of it; ECI, unit.
+/// Outward normal of the ellipsoid at a stretched point of its surface; ECI, unit.
 Vector3 normal_at(const Vector3& point) {
   return stretched(point).normalized();
 }

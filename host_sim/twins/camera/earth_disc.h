@@ -1,7 +1,7 @@
 #pragma once
 // The Earth in the view of a camera: occultation and radiance. An ellipsoid (WGS 84, its pole along z of GCRF as in
-// truth/forces/shadow.h) without atmosphere or clouds, a Lambert surface of albedo 0.3 in the Sun's light, dark at
-// night.
+// truth/forces/radiation_pressure.h) without atmosphere or clouds, a Lambert surface of albedo 0.3 in the Sun's light,
+// dark at night.
 
 #include "fsw/core/types.h"
 
@@ -10,28 +10,28 @@ namespace vbar::twins::camera {
 struct EarthSight {
   double covered = 0.0;        ///< 0 above the limb, 1 below; linear over `blur` about it
   double distance_m = 0.0;     ///< to the surface, or to the limb
-  double cosine_of_sun = 0.0;  ///< of the Sun's angle from the local vertical there; negative at night
+  double cosine_of_sun = 0.0;  ///< cosine of the Sun's angle from the local vertical there; negative at night
 };
 
 class EarthDisc {
  public:
-  /// `position_eci`: of the camera, outside the Earth; `sun_eci`: both geocentric, m.
+  /// Makes the disc. `position_eci`: that of the camera, outside the Earth; `sun_eci`: both geocentric, m.
   EarthDisc(const fsw::Vector3& position_eci, const fsw::Vector3& sun_eci);
 
-  /// Along `direction_eci` (unit); `blur`: rad, positive.
+  /// Returns the sight of the Earth along `direction_eci` (unit); `blur`: rad, positive.
   [[nodiscard]] EarthSight look(const fsw::Vector3& direction_eci, double blur) const;
 
-  /// True if something at `distance_m` along `direction_eci` is behind the Earth.
+  /// Whether an object at `distance_m` along `direction_eci` is behind the Earth.
   [[nodiscard]] bool hides(const fsw::Vector3& direction_eci, double distance_m) const;
 
-  /// The smallest cone about the centre's direction that holds all of it: half angle, rad.
+  /// Half angle of the smallest cone about the centre's direction that holds the whole Earth, rad.
   [[nodiscard]] double angular_radius() const { return angular_radius_; }
   [[nodiscard]] const fsw::Vector3& centre_direction_eci() const { return centre_direction_eci_; }
 
-  /// Photons/(m^2 s sr) of a surface that faces the Sun, for sunlight of the given photons/(m^2 s).
+  /// Returns the photons/(m^2 s sr) of a surface that faces the Sun, for sunlight of the given photons/(m^2 s).
   [[nodiscard]] static double radiance(double sun_photons_per_m2_s);
 
-  /// Light of the Earth at the camera: the sum of all its directions' light, each times its unit vector,
+  /// Returns the light of the Earth at the camera: the sum of all its directions' light, each times its unit vector,
   /// photons/(m^2 s), ECI axes. It points at the Earth's brightest part.
   [[nodiscard]] fsw::Vector3 light_eci(double sun_photons_per_m2_s) const;
 

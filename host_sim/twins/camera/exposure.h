@@ -16,9 +16,9 @@ namespace vbar::twins::camera {
 
 /// A spacecraft, in the field of view or not.
 struct ObjectInView {
-  std::string name;                                  ///< of the spacecraft
+  std::string name;                                  ///< name of the spacecraft
   std::string model;                                 ///< its CAD file, data/models/<model>.obj
-  fsw::Vector3 position_eci = fsw::Vector3::Zero();  ///< of its body frame's origin from the camera, m
+  fsw::Vector3 position_eci = fsw::Vector3::Zero();  ///< position of its body frame's origin from the camera, m
   fsw::Vector3 velocity_eci = fsw::Vector3::Zero();  ///< the same, m/s
   Eigen::Quaterniond q_body_eci = Eigen::Quaterniond::Identity();
   double sunlit = 1.0;  ///< visible fraction of the Sun's disc, 0 to 1
@@ -29,14 +29,14 @@ struct ObjectInView {
   }
 };
 
-/// All at the middle of the exposure; GCRF axes. Positions are geometric. Light time and aberration of a co-moving
+/// Inputs at the middle of the exposure; GCRF axes. Positions are geometric. Light time and aberration of a co-moving
 /// object cancel, so objects are drawn where they are; stars, Sun and Moon are drawn where aberration puts them.
 struct Exposure {
   fsw::GpsTime time;
   std::int64_t number = 0;                                           ///< from 0; selects the noise
   std::optional<double> duration_s = std::nullopt;                   ///< as commanded; otherwise that of the settings
   Eigen::Quaterniond q_camera_eci = Eigen::Quaterniond::Identity();  ///< camera axes: z boresight, x right, y down
-  fsw::Vector3 rate_camera = fsw::Vector3::Zero();  ///< of the camera with respect to ECI, in its own axes, rad/s
+  fsw::Vector3 rate_camera = fsw::Vector3::Zero();  ///< rate of the camera with respect to ECI, in its own axes, rad/s
   fsw::Vector3 camera_position_eci = fsw::Vector3::Zero();  ///< geocentric, m
   fsw::Vector3 camera_velocity_eci = fsw::Vector3::Zero();  ///< geocentric, m/s
   fsw::Vector3 earth_velocity_bcrs = fsw::Vector3::Zero();  ///< barycentric, m/s: for aberration

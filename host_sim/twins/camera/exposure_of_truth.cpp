@@ -14,7 +14,8 @@ namespace {
 constexpr double kJ2000 = 2451545.0;
 constexpr double kDaysPerJulianYear = 365.25;
 
-/// Barycentric, m/s. The series asks for TDB; TT is within 2 ms of it, in which the velocity turns by 4e-10.
+/// Barycentric velocity, m/s. The series asks for TDB; TT differs by less than 2 ms, in which the velocity rotates by
+/// 4e-10.
 fsw::Vector3 earth_velocity_bcrs(truth::JulianDate tt) {
   double heliocentric[2][3], barycentric[2][3];
   static_cast<void>(eraEpv00(tt.day, tt.fraction, heliocentric, barycentric));  // warns of dates outside 1900 to 2100

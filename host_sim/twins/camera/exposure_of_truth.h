@@ -27,10 +27,10 @@ struct CameraMount {
   std::vector<Model> models;
 };
 
-/// Share of the Sun's disc that the ellipsoidal Earth leaves uncovered; geocentric, m.
+/// Returns the share of the Sun's disc that the ellipsoidal Earth leaves uncovered; geocentric, m.
 double sunlit_fraction(const fsw::Vector3& position_eci, const fsw::Vector3& sun_eci);
 
-/// Exposure `number` at the instant of `truth`. The objects are the spacecraft of `mount.models` other than the
+/// Returns exposure `number` at the instant of `truth`. The objects are the spacecraft of `mount.models` other than the
 /// camera's own, in that order; those that the truth lacks, or that have no attitude, are omitted. Sun, Moon and the
 /// Earth's velocity by ERFA, sunlight on the objects by the umbra and penumbra of the ellipsoidal Earth. Throws
 /// std::invalid_argument, which names what is missing, if the camera's spacecraft or its attitude is.

@@ -32,16 +32,16 @@ class ImageMaker final : public ImageTaker {
     std::uint8_t unit = 0;        ///< number of the camera
   };
 
-  /// `renderer` must not be empty.
+  /// Makes a camera; `renderer` must not be empty.
   ImageMaker(const Settings& settings, Renderer renderer);
 
-  /// A pure function of the settings and the exposure.
+  /// Takes an image: a pure function of the settings and the exposure.
   TakenImage take(const Exposure& exposure) override;
   [[nodiscard]] bool is_reproducible() const override { return true; }
-  /// "render_s" and "detector_s": wall-clock time spent.
+  /// Returns "render_s" and "detector_s": wall-clock time spent.
   [[nodiscard]] std::vector<Note> statistics() const override;
 
-  /// The packets of the image.
+  /// Returns the packets of the image.
   std::vector<Packet> packets_of(const Exposure& exposure);
 
   [[nodiscard]] const Settings& settings() const { return settings_; }
@@ -56,7 +56,7 @@ class ImageMaker final : public ImageTaker {
   std::atomic<double> detector_s_{0.0};
 };
 
-/// The packets of an image taken.
+/// Returns the packets of an image taken.
 std::vector<Packet> packets_of(const ImageMaker::Settings& settings, const Exposure& exposure,
                                std::span<const std::uint16_t> dn);
 

@@ -1,4 +1,5 @@
 #pragma once
+// A point of light on the detector.
 
 #include "fsw/core/types.h"
 

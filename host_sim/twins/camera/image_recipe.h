@@ -15,7 +15,7 @@ namespace vbar::twins::camera {
 inline constexpr std::size_t kMaxObjectsInView = 8;
 inline constexpr std::size_t kMaxNameBytes = 63;
 
-/// Whether a number of a logged message fits its field in the header of a packet.
+/// Returns whether a number of a logged message fits its field in the header of a packet.
 constexpr bool fits_header(std::int16_t number) {
   return number >= 0 && number <= std::numeric_limits<std::uint8_t>::max();
 }
@@ -27,11 +27,11 @@ struct ImageRecipe {
   Exposure exposure;
 };
 
-/// The LCM message. Throws std::invalid_argument for more than kMaxObjectsInView objects and for a name of an object or
-/// a model longer than kMaxNameBytes.
+/// Encodes the LCM message. Throws std::invalid_argument for more than kMaxObjectsInView objects and for a name of an
+/// object or a model longer than kMaxNameBytes.
 [[nodiscard]] std::vector<std::uint8_t> bytes_of(const ImageRecipe& recipe);
 
-/// The recipe, every number to the last bit; empty if the bytes are not exactly one such message.
+/// Decodes the recipe, every number to the last bit; empty if the bytes are not exactly one such message.
 [[nodiscard]] std::optional<ImageRecipe> recipe_of(std::span<const std::uint8_t> bytes);
 
 }  // namespace vbar::twins::camera

@@ -26,16 +26,17 @@ class ImageTaker {
 
   // As those of PacketSource.
   virtual void start(fsw::GpsTime first_epoch) { static_cast<void>(first_epoch); }
-  /// From another thread than take(), which then returns without delay.
+  /// Stops the taker, from another thread than take(), which then returns without delay.
   virtual void stop(StopReason reason) { static_cast<void>(reason); }
 
-  /// On the sensor's own thread, always the same one. An exception ends the run.
+  /// Takes an image, on the sensor's own thread, always the same one. An exception ends the run.
   virtual TakenImage take(const Exposure& exposure) = 0;
 
-  /// Whether take() is a pure function of the exposure, so that a log may keep the exposure in place of the pixels.
+  /// Returns whether take() is a pure function of the exposure, so that a log may keep the exposure in place of the
+  /// pixels.
   [[nodiscard]] virtual bool is_reproducible() const { return false; }
 
-  /// So far; while take() runs, too.
+  /// Returns the figures so far; also called while take() runs.
   [[nodiscard]] virtual std::vector<Note> statistics() const { return {}; }
 };
 

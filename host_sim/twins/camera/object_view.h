@@ -14,14 +14,14 @@ namespace vbar::twins::camera {
 /// A spacecraft in view of the camera and its illumination; camera axes.
 struct ObjectView {
   std::string model;                                     ///< its CAD file, data/models/<model>.obj
-  fsw::Vector3 position_camera = fsw::Vector3::UnitZ();  ///< of its body frame's origin, m
+  fsw::Vector3 position_camera = fsw::Vector3::UnitZ();  ///< position of its body frame's origin, m
   fsw::Matrix3 R_camera_body = fsw::Matrix3::Identity();
   fsw::Vector3 sun_direction_camera = fsw::Vector3::UnitZ();    ///< unit
   double sun_photons_per_m2_s = 0.0;                            ///< that reach it: none in the Earth's shadow
   fsw::Vector3 earth_direction_camera = fsw::Vector3::UnitZ();  ///< to the middle of the Earth's light, unit
   double earth_photons_per_m2_s = 0.0;                          ///< on a surface that looks there
-  double earth_half_angle = 1.1;                                ///< of the Earth's disc as the object sees it, rad
-  double pixel_rad = 0.0;                                       ///< angle subtended by a pixel of the camera
+  double earth_half_angle = 1.1;  ///< half angle of the Earth's disc as the object sees it, rad
+  double pixel_rad = 0.0;         ///< angle subtended by a pixel of the camera
 };
 
 /// Appends the object's light to `out`. One call at a time.

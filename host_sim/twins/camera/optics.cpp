@@ -30,7 +30,7 @@ Matrix2 Optics::distortion_slope(const Vector2& plane) const {
   const auto& [k1, k2, p1, p2, k3] = settings_.distortion;
   const double x = plane.x(), y = plane.y(), r2 = plane.squaredNorm();
   const double radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
-  const double growth = 2.0 * (k1 + r2 * (2.0 * k2 + 3.0 * r2 * k3));  // of radial, per x and per unit of x
+  const double growth = 2.0 * (k1 + r2 * (2.0 * k2 + 3.0 * r2 * k3));  // growth of radial, per x and per unit of x
   Matrix2 slope;
   slope(0, 0) = radial + growth * x * x + 2.0 * p1 * y + 6.0 * p2 * x;
   slope(0, 1) = growth * x * y + 2.0 * p1 * x + 2.0 * p2 * y;

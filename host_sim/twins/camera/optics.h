@@ -9,19 +9,19 @@
 
 namespace vbar::twins::camera {
 
-/// Pinhole with Brown-Conrady distortion (Brown 1966, in OpenCV's order of coefficients). Camera axes: z boresight,
-/// x right, y down; pixel coordinates are the detector's.
+/// Lens as a pinhole with Brown-Conrady distortion (Brown 1966, in OpenCV's order of coefficients). Camera axes: z
+/// boresight, x right, y down; pixel coordinates are the detector's.
 class Optics final : public Projection {
  public:
   explicit Optics(const CameraSettings& settings);
 
-  /// Empty if the direction is more than 70 deg off the boresight.
+  /// Projects a direction; empty if the direction is more than 70 deg off the boresight.
   [[nodiscard]] std::optional<fsw::Vector2> project(const fsw::Vector3& direction_camera) const override;
   [[nodiscard]] fsw::Vector2 image_velocity(const fsw::Vector3& direction_camera,
                                             const fsw::Vector3& rate_camera) const override;
-  /// By Newton's method from the undistorted one.
+  /// Inverts the projection by Newton's method from the undistorted one.
   [[nodiscard]] fsw::Vector3 direction_of(const fsw::Vector2& pixel) const override;
-  /// 1 at the principal point.
+  /// Returns the transmission relative to that at the principal point, 1 at the principal point.
   [[nodiscard]] double vignetting(const fsw::Vector2& pixel) const override;
   [[nodiscard]] double focal_length_px() const override { return focal_length_px_; }
 

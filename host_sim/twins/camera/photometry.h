@@ -13,23 +13,23 @@
 
 namespace vbar::twins::camera {
 
-/// Of the Sun at 1 au (IAU 2015: V = -26.74 +- 0.02 on several authors' scales).
+/// Magnitude V of the Sun at 1 au (IAU 2015: V = -26.74 +- 0.02 on several authors' scales).
 inline constexpr double kSunMagnitude = -26.74;
 inline constexpr double kSunColour = 0.653;                  ///< B-V; Ramirez et al. 2012
 inline constexpr double kAstronomicalUnit = 1.495978707e11;  ///< m, IAU 2012
 
-/// Photons/(m^2 s) of a star of V = 0 and B-V = 0, from the spectrum above. CameraSettings::zero_magnitude_photons is
-/// this, rounded.
+/// Returns the photons/(m^2 s) of a star of V = 0 and B-V = 0, from the spectrum above.
+/// CameraSettings::zero_magnitude_photons is this, rounded.
 double zero_magnitude_photons_from_spectrum();
 
-/// Photons of a star of colour B-V against those of one of B-V = 0 and the same V; colours beyond -0.3 and 1.7 count as
-/// these.
+/// Returns the photons of a star of colour B-V against those of one of B-V = 0 and the same V; colours beyond -0.3 and
+/// 1.7 count as these.
 double colour_factor(double b_v);
 
-/// Photons/(m^2 s) of a star of magnitude `v` and colour `b_v`.
+/// Returns the photons/(m^2 s) of a star of magnitude `v` and colour `b_v`.
 double star_photons(double zero_magnitude_photons, double v, double b_v);
 
-/// Photons/(m^2 s) of the Sun at `distance_m`.
+/// Returns the photons/(m^2 s) of the Sun at `distance_m`.
 double sun_photons(double zero_magnitude_photons, double distance_m);
 
 }  // namespace vbar::twins::camera

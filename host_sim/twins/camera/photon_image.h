@@ -9,7 +9,7 @@
 namespace vbar::twins::camera {
 
 struct PhotonImage {
-  Region region;                 ///< of the detector
+  Region region;                 ///< region of the detector
   std::vector<float> electrons;  ///< rows from the top, pixels from the left; no upper limit
 
   [[nodiscard]] float& at(int x, int y) {  ///< detector coordinates

@@ -20,7 +20,7 @@ class PixelDirections {
   /// Computes those of `region`, if it is another one than that of the last call; 24 bytes a pixel.
   void prepare(const Region& region);
 
-  /// Of pixel (x, y) of the detector, within the region: projection.direction_of() to the bit.
+  /// Returns the direction of pixel (x, y) of the detector, within the region: projection.direction_of() to the bit.
   [[nodiscard]] const fsw::Vector3& at(int x, int y) const {
     return directions_[static_cast<std::size_t>(y - region_.y) * static_cast<std::size_t>(region_.width) +
                        static_cast<std::size_t>(x - region_.x)];

@@ -134,7 +134,8 @@ VBAR_INLINE float by_expansion(float mean, float w) {
   return mean + (root * w + (first + (second + third)));
 }
 
-/// Of the means from kGaussianMean on; the other numbers stay. Each loop is one that a compiler makes vectors of.
+/// Expands the quantiles of the means from kGaussianMean on; the other numbers stay. A compiler makes vectors of each
+/// loop.
 VBAR_WIDE_LOOPS void expand(const float* means, const float* normal, float* numbers) {
   ChunkFloats mean, number;
   for (std::size_t k = 0; k < kChunk; ++k) {

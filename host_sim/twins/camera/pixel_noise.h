@@ -30,17 +30,17 @@ struct NoiseKey {
   std::uint64_t exposure = 0;
 };
 
-/// The words of chunk `chunk` of an image: pixel k of it gets word k / 64 of the block numbered 64 * chunk + k % 64,
-/// counter (block, exposure's low word, its high word, kind).
+/// Draws the words of chunk `chunk` of an image: its pixel k gets word k / 64 of the block numbered 64 * chunk + k %
+/// 64, counter (block, exposure's low word, its high word, kind).
 void draw_words(const NoiseKey& key, NoiseKind kind, std::uint32_t chunk, ChunkWords& words);
 
-/// Standard normal numbers, up to 6.3 either way (the word's finest probability is 2^-33); error below 1e-5.
+/// Computes standard normal numbers, up to 6.3 either way (the word's finest probability is 2^-33); error below 1e-5.
 void normal_numbers(const ChunkWords& words, ChunkFloats& normal);
 
-/// Poisson numbers of the means given (0 for one that is negative or not a number). Below kGaussianMean by search
-/// through the distribution function, exact to 1e-7 in probability; from there on by the expansion of the quantile
-/// about the normal one (Giles 2016, algorithm 955), which is within 1e-4 in probability there and better with the
-/// mean.
+/// Computes Poisson numbers of the means given (0 for one that is negative or not a number). Below kGaussianMean by
+/// search through the distribution function, exact to 1e-7 in probability; from there on by the expansion of the
+/// quantile about the normal one (Giles 2016, algorithm 955), which is within 1e-4 in probability there and better with
+/// the mean.
 void poisson_numbers(const ChunkWords& words, std::span<const float, kChunk> means, std::span<float, kChunk> numbers);
 
 inline constexpr float kGaussianMean = 12.0F;

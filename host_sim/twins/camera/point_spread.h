@@ -23,12 +23,13 @@ class PointSpread {
   /// Adds many points that move alike and belong together: an object, a disc. They are first gathered on a grid, of a
   /// 64th of their extent or a third of the spread, whichever is less, by bilinear weights: sums and centroids stay
   /// exact, and nothing changes as an object grows from a point to many pixels. Beyond kWide_px the grid divides pixels
-  /// evenly (wide_spread.h).
+  /// evenly (extended_psf.h).
   void add(std::span<const ImagePoint> points, const fsw::Vector2& smear_px, PhotonImage& image);
 
   static constexpr double kWide_px = 96.0;
 
-  /// Distance in pixels from a point of given electrons at which its light is lost: 0.05 electrons a pixel, 1e-4 of it.
+  /// Returns the distance in pixels from a point of given electrons at which its light is neglected: 0.05 electrons a
+  /// pixel, 1e-4 of the light.
   [[nodiscard]] double reach_px(double electrons) const;
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-// From directions to the pixels of an image: the lens of a camera, or the calibrated map of a display that stands in
-// for the sky of one.
+// From directions to the pixels of an image: the lens of a camera, or the calibrated map of a display that shows a
+// camera its sky.
 
 #include <optional>
 
@@ -15,30 +15,30 @@ struct Cone {
   double half_angle = 0.0;                    ///< rad
 };
 
-/// Camera axes: z boresight, x right, y down. Pixel coordinates are those of the image; an integer is the centre of a
-/// pixel.
+/// Map from directions to pixels. Camera axes: z boresight, x right, y down. Pixel coordinates are those of the image;
+/// an integer is the centre of a pixel.
 class Projection {
  public:
   virtual ~Projection() = default;
 
-  /// Image point of light from `direction_camera` (any length), on the image or beside it; empty if the projection is
-  /// not defined there.
+  /// Returns the image point of light from `direction_camera` (any length), on the image or beside it; empty if the
+  /// projection is not defined there.
   [[nodiscard]] virtual std::optional<fsw::Vector2> project(const fsw::Vector3& direction_camera) const = 0;
 
-  /// Motion of that point (px/s) as the direction (unit) changes by `rate_camera` (1/s).
+  /// Returns the motion of the image point (px/s) as the direction (unit) changes by `rate_camera` (1/s).
   [[nodiscard]] virtual fsw::Vector2 image_velocity(const fsw::Vector3& direction_camera,
                                                     const fsw::Vector3& rate_camera) const = 0;
 
-  /// The unit vector that project() sends to `pixel`.
+  /// Returns the unit vector that project() sends to `pixel`.
   [[nodiscard]] virtual fsw::Vector3 direction_of(const fsw::Vector2& pixel) const = 0;
 
-  /// Transmitted fraction of the light, 1 where nothing is lost.
+  /// Returns the transmitted fraction of the light, 1 where nothing is lost.
   [[nodiscard]] virtual double vignetting(const fsw::Vector2& pixel) const = 0;
 
-  /// Pixels per radian on the boresight.
+  /// Returns the pixels per radian on the boresight.
   [[nodiscard]] virtual double focal_length_px() const = 0;
 
-  /// The narrowest cone about the region's middle that holds the region grown by `margin_px` on each side.
+  /// Returns the narrowest cone about the region's middle that holds the region grown by `margin_px` on each side.
   [[nodiscard]] Cone cone_of(const Region& region, double margin_px) const;
 };
 

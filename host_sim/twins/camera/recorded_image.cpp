@@ -15,7 +15,8 @@ namespace vbar::twins::camera {
 namespace {
 
 constexpr std::int8_t kJpegLs = 1;
-// Of the encoded message: type hash, spacecraft, unit, time, number, exposure, region, bits, coding.
+// Sizes of the fields of the encoded message: type hash, spacecraft, unit, time, number, exposure, region, bits,
+// coding.
 constexpr std::size_t kSizeAt = 8 + 2 * 2 + 3 * 8 + 4 * 4 + 2 * 1;
 constexpr std::size_t kDataAt = kSizeAt + 4;
 

@@ -39,7 +39,7 @@ class SceneRenderer {
                 ObjectRenderer objects = {}, ObjectCover covers = {},
                 std::shared_ptr<const Projection> projection = nullptr);
 
-  /// Expected photo-electrons of the region that is read, replacing `image`. No dark current, no noise.
+  /// Renders the expected photo-electrons of the region that is read, replacing `image`. No dark current, no noise.
   void render(const Exposure& exposure, PhotonImage& image);
 
  private:
@@ -59,7 +59,7 @@ class SceneRenderer {
   [[nodiscard]] double sun_in_sight(const View& view);
 
   CameraSettings settings_;
-  double duration_s_ = 0.0;  ///< of the exposure being rendered
+  double duration_s_ = 0.0;  ///< duration of the exposure being rendered
   std::shared_ptr<const Projection> projection_;
   PointSpread spread_;
   StarSky sky_;

@@ -27,7 +27,7 @@ class Rows {
     if (!in_) throw std::runtime_error(fmt::format("{}: cannot open the star catalogue", file.string()));
   }
 
-  /// Of what begins with '#' nothing.
+  /// Reads the next row; lines that begin with '#' are skipped.
   bool next() {
     while (std::getline(in_, row_)) {
       ++number_;
@@ -63,7 +63,7 @@ namespace own_table {
 
 constexpr std::string_view kColumns = "hip,ra_deg,dec_deg,pm_ra_mas,pm_dec_mas,v,b_v";
 constexpr std::size_t kNumbers = 7;
-constexpr double kFaintest = 7.995;  // the file's last star is at least as faint
+constexpr double kFaintest = 7.995;  // minimum magnitude of the file's last star
 
 std::optional<CatalogueStar> parse(std::string_view row) {
   std::array<double, kNumbers> n;
@@ -142,7 +142,7 @@ void move_to_j2000(CatalogueStar& star) {
       place + kYearsToJ2000 * kRadPerMilliarcsecond * (star.pm_ra_mas * east + star.pm_dec_mas * north);
   const double ra_now = std::atan2(moved.y(), moved.x()) / kRadPerDegree;
   star.ra_deg = ra_now < 0.0 ? ra_now + 360.0 : ra_now;
-  if (star.ra_deg >= 360.0) star.ra_deg = 0.0;  // of a place just west of the equinox
+  if (star.ra_deg >= 360.0) star.ra_deg = 0.0;  // right ascension of a place just west of the equinox
   star.dec_deg = std::atan2(moved.z(), std::hypot(moved.x(), moved.y())) / kRadPerDegree;
 }
 

@@ -13,7 +13,7 @@ inline constexpr double kRadPerMilliarcsecond = kRadPerDegree / 3.6e6;
 struct CatalogueStar {
   int hip = 0;              ///< 0: not in the Hipparcos catalogue
   double ra_deg = 0.0;      ///< ICRS, barycentric, at J2000.0
-  double dec_deg = 0.0;     ///< likewise
+  double dec_deg = 0.0;     ///< ICRS, barycentric, at J2000.0
   double pm_ra_mas = 0.0;   ///< mas a Julian year, multiplied by the cosine of the declination
   double pm_dec_mas = 0.0;  ///< mas a Julian year
   double v = 0.0;           ///< Johnson V

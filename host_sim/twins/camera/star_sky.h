@@ -11,7 +11,7 @@ namespace vbar::twins::camera {
 struct SkyStar {
   int hip = 0;                                           ///< 0: not in the Hipparcos catalogue
   fsw::Vector3 direction_j2000 = fsw::Vector3::UnitX();  ///< ICRS, barycentric, at J2000.0; unit
-  fsw::Vector3 motion_per_year = fsw::Vector3::Zero();   ///< of the direction, rad a Julian year
+  fsw::Vector3 motion_per_year = fsw::Vector3::Zero();   ///< motion of the direction, rad a Julian year
   double v = 0.0;                                        ///< magnitude
   double b_v = 0.0;                                      ///< colour
   double photons_per_m2_s = 0.0;
@@ -24,7 +24,7 @@ struct ApparentStar {
 
 class StarSky {
  public:
-  /// Of a file that read_star_catalogue accepts; errors as there.
+  /// Loads the stars of a file that read_star_catalogue accepts; errors as there.
   static StarSky load(const std::filesystem::path& file, double zero_magnitude_photons);
 
   /// Appends the stars within `half_angle` (rad) of `axis_eci` (unit), and some a little outside, to `seen`.

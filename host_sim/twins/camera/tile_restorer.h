@@ -22,8 +22,8 @@ class TileRestorer final : public TileSource {
   /// when they are needed.
   TileRestorer(ImagesOfLog&& images, MakeImage make_image);
 
-  /// Also throws std::runtime_error if the log holds nothing of the image, or if the checksum of the restored tiles
-  /// differs from that of the flown ones.
+  /// Restores the packets of a run. Also throws std::runtime_error if the log holds nothing of the image, or if the
+  /// checksum of the restored tiles differs from that of the tiles in the recorded run.
   std::vector<Packet> packets_of(const TileRun& run) override;
 
   [[nodiscard]] std::vector<fsw::GpsTime> exposures() const override;
@@ -47,7 +47,7 @@ class TileRestorer final : public TileSource {
   std::map<ImageKey, Image> images_;
   std::map<fsw::GpsTime, ImageKey> keys_;  ///< by the time of the exposure
   std::optional<ImageKey> made_;
-  std::vector<Packet> packets_;  // of that image
+  std::vector<Packet> packets_;  // packets of that image
 };
 
 }  // namespace vbar::twins::camera

@@ -149,7 +149,7 @@ void WideSpread::spread_core(const Box& from, const Box& canvas, double reach) {
   const std::vector<float> weights = pixel_weights(core_sigma_, m, reach_nodes);
   const auto weight_of = [&](int offset) { return weights[static_cast<std::size_t>(offset + reach_nodes)]; };
   const int grid_width = static_cast<int>(grid_width_), grid_height = static_cast<int>(grid_height_);
-  const int columns = (grid_width + m - 1) / m;  // of nodes of one place in a pixel
+  const int columns = (grid_width + m - 1) / m;  // columns of nodes of one place in a pixel
   canvas_.assign(static_cast<std::size_t>(canvas.width) * static_cast<std::size_t>(canvas.height), 0.0F);
   row_.resize(grid_width_);
   phases_.assign(static_cast<std::size_t>(columns * m), 0.0F);
@@ -175,7 +175,7 @@ void WideSpread::spread_core(const Box& from, const Box& canvas, double reach) {
   }
 }
 
-/// Of the core's image, which has the pixel's width already.
+/// Spreads the core's image, which has the pixel's width already.
 void WideSpread::spread_halo(const Box& canvas, double reach) {
   const int taps = static_cast<int>(std::ceil(reach));
   std::vector<float> weights(static_cast<std::size_t>(2 * taps + 1));

@@ -26,7 +26,7 @@ class WideSpread {
 
   explicit WideSpread(const Settings& settings);
 
-  /// Whether the halo is wide enough to be computed from the image of the core.
+  /// Returns whether the halo is wide enough to be computed from the image of the core.
   [[nodiscard]] bool can_spread() const { return halo_variance_ >= 1.0 || settings_.halo_fraction == 0.0; }
 
   /// Adds the points, each spread over `core_reach` and `halo_reach` pixels at most. `smear_px`: their common motion
@@ -35,7 +35,7 @@ class WideSpread {
            PhotonImage& image);
 
  private:
-  /// Pixels x to before x + width, rows likewise.
+  /// Pixels x to before x + width, and y to before y + height.
   struct Box {
     int x = 0, y = 0, width = 0, height = 0;
   };

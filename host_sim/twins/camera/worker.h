@@ -24,7 +24,7 @@ class Worker {
   /// those of jobs to come.
   void stop();
 
-  /// `job` on the worker's thread, after all jobs before it; what it throws comes out of the future.
+  /// Runs `job` on the worker's thread, after all jobs before it; its exceptions come out of the future.
   template <class Job>
   std::future<std::invoke_result_t<Job>> run(Job job) {
     // A std::function must be copyable, which a task is not.

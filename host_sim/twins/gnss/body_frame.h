@@ -24,18 +24,19 @@ struct BodyFrameErrors {
 /// Draws from the stream "gnss/<spacecraft>/body_frame" of `seed`.
 BodyFrameErrors draw_body_frame(const BodyFrameSettings& settings, std::uint64_t seed, std::string_view spacecraft);
 
-/// True antenna phase centre from the true centre of mass, in the known body axes; without noise.
+/// Returns the true antenna phase centre from the true centre of mass, in the known body axes; without noise.
 fsw::Vector3 antenna_from_com(const BodyFrameSettings& settings, const BodyFrameErrors& errors);
 
-/// True boresight in the known body axes, unit vector.
+/// Returns the true boresight in the known body axes, unit vector.
 fsw::Vector3 true_boresight(const BodyFrameSettings& settings, const BodyFrameErrors& errors);
 
-/// Root mean square length over all draws of the relative position error of two spacecraft that each use the
-/// nominal antenna position, m: the static floor under any filter that does not estimate these errors. (Constant in the
-/// body; of a pair that keeps parallel attitudes it is a constant vector, indistinguishable from a baseline.)
+/// Returns the root mean square length over all draws of the relative position error of two spacecraft that each use
+/// the nominal antenna position, m: the static floor under any filter that does not estimate these errors. (Constant in
+/// the body; for a pair that keeps parallel attitudes it is a constant vector, indistinguishable from a baseline.)
 double static_floor_rms_m(const BodyFrameSettings& servicer, const BodyFrameSettings& target);
 
-/// The same of one run's draws for bodies with parallel axes: target's antenna error minus servicer's, body frame, m.
+/// Returns the static floor of one run's draws for bodies with parallel axes: target's antenna error minus servicer's,
+/// body frame, m.
 fsw::Vector3 static_floor_m(const BodyFrameSettings& servicer_settings, const BodyFrameErrors& servicer,
                             const BodyFrameSettings& target_settings, const BodyFrameErrors& target);
 

@@ -9,8 +9,8 @@
 
 namespace vbar::twins::gnss {
 
-/// One set of elements. Unlike the broadcast one it names the node by its Earth-fixed longitude at toe, so that it
-/// depends on no week and can be moved to another day; omega0 = node_at_toe + Earth rate * (seconds of week of toe).
+/// Set of elements. Unlike the broadcast one it names the node by its Earth-fixed longitude at toe, so that
+/// it depends on no week and can be moved to another day; omega0 = node_at_toe + Earth rate * (seconds of week of toe).
 /// The clock's reference time is toe.
 struct Ephemeris {
   SatelliteId satellite;
@@ -19,7 +19,7 @@ struct Ephemeris {
   double e = 0.0;
   double m0 = 0.0;           ///< rad, as all angles
   double delta_n = 0.0;      ///< rad/s
-  double node_at_toe = 0.0;  ///< of geostationary BeiDou satellites: in the frame of their model
+  double node_at_toe = 0.0;  ///< rad; that of geostationary BeiDou satellites is in the frame of their model
   double omega_dot = 0.0;    ///< rad/s
   double i0 = 0.0;
   double i_dot = 0.0;  ///< rad/s
@@ -37,18 +37,18 @@ struct SatelliteState {
   double clock_drift = 0.0;  ///< s/s, the same
 };
 
-/// Gravitational parameter (m^3/s^2) and Earth rate (rad/s) of a system's model.
+/// Return the gravitational parameter (m^3/s^2) and Earth rate (rad/s) of a system's model.
 double gravitational_parameter(System system);
 double earth_rate(System system);
 
-/// Mean motion, delta_n included, rad/s.
+/// Returns the mean motion, delta_n included, rad/s.
 double mean_motion(const Ephemeris& ephemeris);
 
-/// State `offset_s` after `time`. The model is evaluated at any distance from toe.
+/// Returns the state `offset_s` after `time`. The model is evaluated at any distance from toe.
 SatelliteState satellite_state(const Ephemeris& ephemeris, fsw::GpsTime time, double offset_s = 0.0);
 
-/// The set of elements with reference time `toe` that describes the same motion. Exact: every term of the model is
-/// constant or linear in time. (Sets of geostationary BeiDou satellites must have no harmonic terms or rates, as
+/// Returns the set of elements with reference time `toe` that describes the same motion. Exact: every term of the model
+/// is constant or linear in time. (Sets of geostationary BeiDou satellites must have no harmonic terms or rates, as
 /// constellation.h makes them: their tilted frame rotates with toe.)
 Ephemeris with_reference_time(const Ephemeris& ephemeris, fsw::GpsTime toe);
 

@@ -88,7 +88,7 @@ std::vector<EphemerisFile> navigation_files_of(const std::filesystem::path& data
   return files;
 }
 
-/// Of the first file that has any.
+/// Returns the corrections of the first file that has any.
 BroadcastCorrections corrections_of(const std::vector<EphemerisFile>& files) {
   const auto found =
       std::ranges::find_if(files, [](const EphemerisFile& file) { return file.corrections != BroadcastCorrections{}; });

@@ -19,7 +19,7 @@
 
 namespace vbar::twins::gnss {
 
-/// Which satellites of a system fly. kBroadcast: those of the system's real broadcast file (GPS 31 of 2011-10-20; 4
+/// Satellites of a system that fly. kBroadcast: those of the system's real broadcast file (GPS 31 of 2011-10-20; 4
 /// Galileo, 14 BeiDou of 2013-07-19). kNominal: the full constellation by its definition (Galileo: Walker 24/3/1 at 56
 /// deg, 29600.318 km; BeiDou-3: Walker 24/3/1 at 55 deg, 27906.1 km, its medium orbits only); GPS has none.
 enum class SatelliteSet : std::uint8_t { kNone, kBroadcast, kNominal };
@@ -28,8 +28,8 @@ struct ConstellationSettings {
   SatelliteSet gps = SatelliteSet::kBroadcast;
   SatelliteSet galileo = SatelliteSet::kBroadcast;
   SatelliteSet beidou = SatelliteSet::kBroadcast;
-  /// Of kBroadcast: absolute, or from the data folder; empty: those of the data folder. The satellites of a system come
-  /// from the first file that has any.
+  /// Files of kBroadcast: absolute, or from the data folder; empty: those of the data folder. The satellites of a
+  /// system come from the first file that has any.
   std::vector<std::filesystem::path> navigation_files{};
   // True minus broadcast, one sigma. Sizes of 2011: signal-in-space range error about 1 m.
   double orbit_error_radial_m = 0.4;
@@ -64,24 +64,24 @@ class Constellation {
   Constellation(const std::filesystem::path& data_directory, const ConstellationSettings& settings, fsw::GpsTime epoch,
                 std::uint64_t seed);
 
-  /// In order of system and number.
+  /// Returns the number of satellites, which are in order of system and number.
   [[nodiscard]] std::size_t size() const { return satellites_.size(); }
   [[nodiscard]] SatelliteId id(std::size_t index) const { return satellites_[index].base.satellite; }
 
-  /// True state and clock of the satellite, `offset_s` after `time`. The errors' own velocity
-  /// (0.2 mm/s) is included in position only.
+  /// Returns the true state and clock of the satellite, `offset_s` after `time`. The errors' own velocity (0.2 mm/s) is
+  /// included in position only.
   [[nodiscard]] SatelliteState true_state(std::size_t index, fsw::GpsTime time, double offset_s) const;
 
-  /// True group delay of the satellite's first signal, s; broadcast values are taken as true.
+  /// Returns the true group delay of the satellite's first signal, s; broadcast values are taken as true.
   [[nodiscard]] double group_delay_s(std::size_t index) const { return satellites_[index].base.group_delay_s; }
 
-  /// The set that the satellite transmits at `time`. GPS: a new one every two hours, with toe at their end; Galileo and
-  /// BeiDou: every hour, with toe at its beginning.
+  /// Returns the set that the satellite transmits at `time`. GPS: a new one every two hours, with toe at their end;
+  /// Galileo and BeiDou: every hour, with toe at its beginning.
   [[nodiscard]] BroadcastSet broadcast_set(std::size_t index, fsw::GpsTime time) const;
 
   [[nodiscard]] const BroadcastCorrections& corrections() const { return corrections_; }
 
-  /// On what the navigation files hold beside what flies.
+  /// Returns the notes on the content of the navigation files that is not used.
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
 
  private:

@@ -10,7 +10,7 @@
 
 namespace vbar::twins::gnss {
 
-/// In addition to the settings of the link: an interruption, during which no message arrives.
+/// Settings of the link and an interruption, during which no message arrives.
 struct CrosslinkSettings {
   engine::LinkSettings link{.latency = {.kind = engine::LatencyKind::kUniform, .minimum_s = 0.05, .maximum_s = 0.5},
                             .loss_probability = 0.0};
@@ -27,7 +27,7 @@ class Crosslink {
   /// Draws from the stream "crosslink/<name>" of `seed`. Throws as check().
   Crosslink(const CrosslinkSettings& settings, std::uint64_t seed, std::string_view name);
 
-  /// One message is sent; times must not decrease. Returns the time of its arrival, complete, or nothing if it is lost.
+  /// Sends one message; times must not decrease. Returns the time of its arrival, complete, or nothing if it is lost.
   /// Messages may overtake one another. The caller keeps them until then.
   std::optional<fsw::GpsTime> send(fsw::GpsTime now);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Reads broadcast ephemerides: those of data/gps, RINEX navigation files (formats/ephemeris_formats.h).
+// Reads broadcast ephemerides: those of data/gps, RINEX navigation files (ephemeris_formats()).
 
 #include <filesystem>
 #include <string>
@@ -13,11 +13,11 @@ namespace vbar::twins::gnss {
 struct EphemerisFile {
   std::vector<Ephemeris> satellites;  ///< for the day of the file
   BroadcastCorrections corrections;   ///< zero if missing in the file
-  std::string note;                   ///< what it holds beside them, with its name; empty: nothing
+  std::string note;                   ///< content of the file beside them, with its name; empty: none
 };
 
-/// The satellites of the systems in `used`; records of others are not looked at. Throws std::runtime_error naming file,
-/// line and what is accepted.
+/// Reads the satellites of the systems in `used`; records of others are not looked at. Throws std::runtime_error naming
+/// file, line and what is accepted.
 EphemerisFile read_ephemeris_file(const std::filesystem::path& file, const SystemSet& used = kAllSystems);
 
 }  // namespace vbar::twins::gnss

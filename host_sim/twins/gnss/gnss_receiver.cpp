@@ -114,7 +114,7 @@ bool GnssReceiver::upset(const Upset& upset) {
   return false;
 }
 
-/// Of all satellites each slips by another multiple: 1, -1, 2, -2, ...
+/// Lets the satellites concerned slip. If these are all, each slips by another multiple: 1, -1, 2, -2, ...
 bool GnssReceiver::slip_satellites(const std::string& satellite, std::int64_t cycles) {
   const auto highest = std::ranges::max_element(truth_.observations, {}, &ObservationTruth::elevation);
   if (highest == truth_.observations.end()) return false;

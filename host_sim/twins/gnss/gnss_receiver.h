@@ -61,26 +61,28 @@ struct ReceiverTruth {
 
 class GnssReceiver final : public ReceiverBytes {
  public:
-  /// `name` is the spacecraft's (with the receiver's number, if it has several): it names all random streams, so that
-  /// neither another receiver nor another setting changes this one's draws. `constellation` must not be null and may be
-  /// shared. Throws std::invalid_argument for settings, std::runtime_error for the data directory's antenna pattern.
+  /// Makes a receiver. `name` is the spacecraft's (with the receiver's number, if it has several): it names all random
+  /// streams, so that neither another receiver nor another setting changes this one's draws. `constellation` must not
+  /// be null and may be shared. Throws std::invalid_argument for settings, std::runtime_error for the data directory's
+  /// antenna pattern.
   GnssReceiver(const GnssReceiverSettings& settings, std::shared_ptr<const Constellation> constellation,
                const std::filesystem::path& data_directory, std::uint64_t seed, const std::string& name);
 
-  /// One epoch: the logs that the receiver sends, in the order RANGE, ephemerides, IONUTC, BESTXYZ, TIME. The first
-  /// call switches it on. Throws std::invalid_argument for a time that is not later than the last or not a whole
-  /// millisecond, and for a truth that is not finite or not near the Earth.
+  /// Measures one epoch: returns the logs that the receiver sends, in the order RANGE, ephemerides, IONUTC, BESTXYZ,
+  /// TIME. The first call switches it on. Throws std::invalid_argument for a time that is not later than the last or
+  /// not a whole millisecond, and for a truth that is not finite or not near the Earth.
   std::vector<std::uint8_t> bytes_at(const BodyTruth& truth);
   ReceiverOutput output_at(const BodyTruth& truth) override { return {bytes_at(truth)}; }
 
   /// Lets a carrier slip by whole cycles at the next epoch, if it is tracked then.
   void command_slip(SatelliteId satellite, Signal signal, std::int64_t cycles, bool seen);
 
-  /// At the next epoch. A slip that is not detected, of all carriers of the satellites concerned; false while none of
-  /// them is tracked. A reset begins as the first epoch did, except that it draws another clock and other ambiguities.
+  /// Upsets the receiver at the next epoch. A slip that is not detected, of all carriers of the satellites concerned;
+  /// false while none of them is tracked. A reset begins as the first epoch did, except that it draws another clock and
+  /// other ambiguities.
   bool upset(const Upset& upset) override;
 
-  /// The last epoch's observations and the truth about them.
+  /// Returns the last epoch's observations and the truth about them.
   [[nodiscard]] const std::vector<oem::RangeRecord>& observations() const { return observations_; }
   [[nodiscard]] const ReceiverTruth& truth() const { return truth_; }
   [[nodiscard]] const BodyFrameErrors& body_frame() const { return body_errors_; }

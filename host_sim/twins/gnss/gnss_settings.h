@@ -1,6 +1,6 @@
 #pragma once
-// Settings of one receiver and its antenna in a mission. Defaults are those of the paper's Appendix A
-// (marked A) or, otherwise of a NovAtel OEM628 and a typical patch antenna.
+// Settings of one receiver and its antenna in a mission. Defaults are those of the paper's Appendix A (marked A), the
+// others those of a NovAtel OEM628 and a typical patch antenna.
 
 #include <cstdint>
 
@@ -8,7 +8,7 @@
 
 namespace vbar::twins::gnss {
 
-/// Which signals can reach the receiver.
+/// Limits of the signals that can reach the receiver.
 struct VisibilitySettings {
   double transmit_aperture_deg = 170.0;   ///< A, "GNSS aperture": full cone about the satellite's nadir
   double receiver_mask_deg = 190.0;       ///< A: full cone about the antenna's boresight
@@ -17,7 +17,7 @@ struct VisibilitySettings {
   friend bool operator==(const VisibilitySettings&, const VisibilitySettings&) = default;
 };
 
-/// From transmitted power to C/N0. The antennas of the satellites are isotropic (A: spherical gain).
+/// Link budget from transmitted power to C/N0. The antennas of the satellites are isotropic (A: spherical gain).
 struct LinkBudgetSettings {
   double boresight_gain_dbi = 4.0;  ///< with the pattern of data/gps below it
   double antenna_temperature_k = 130.0;
@@ -36,7 +36,8 @@ struct TrackingSettings {
   double integration_s = 0.02;
   double acquisition_threshold_dbhz = 33.0;
   double loss_threshold_dbhz = 28.0;
-  double cycle_slips_per_hour = 0.02;  ///< of each signal; every slip is seen by the receiver: the lock time restarts
+  double cycle_slips_per_hour =
+      0.02;  ///< rate of each signal; every slip is seen by the receiver: the lock time restarts
   double undetected_slip_fraction = 0.0;  ///< fraction of these slips that the receiver does not detect
   double code_bias_sigma_m = 0.0;         ///< constant code delay of each signal in the receiver
   double carrier_wander_sigma_mm = 0.0;   ///< first-order Gauss-Markov error of each satellite's and signal's carrier
@@ -88,7 +89,7 @@ enum class GpsEphemerisLog : std::uint8_t { kRawEphem, kGpsEphem };
 
 /// Logs requested from the receiver.
 struct OutputSettings {
-  double period_s = 10.0;               ///< of RANGE, BESTXYZ, TIME: 0.1 to 60, whole milliseconds
+  double period_s = 10.0;               ///< period of RANGE, BESTXYZ, TIME: 0.1 to 60, whole milliseconds
   double ephemeris_period_s = 300.0;    ///< each ephemeris again; new ones at once
   double corrections_period_s = 300.0;  ///< IONUTC
   GpsEphemerisLog gps_ephemeris = GpsEphemerisLog::kRawEphem;

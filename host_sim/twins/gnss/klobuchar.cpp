@@ -10,7 +10,7 @@ namespace vbar::twins::gnss {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-// Of the share above an altitude: peak of the electrons and scale height (Montenbruck, Gill 2002).
+// Parameters of the share above an altitude: peak of the electrons and scale height (Montenbruck, Gill 2002).
 constexpr double kPeakAltitude_m = 420e3;
 constexpr double kScaleHeight_m = 100e3;
 constexpr double kMeanEarthRadius_m = 6371e3;

@@ -13,26 +13,27 @@ struct KlobucharCoefficients {
   friend bool operator==(const KlobucharCoefficients&, const KlobucharCoefficients&) = default;
 };
 
-/// Delay of an L1 signal on the ground, m. Latitude, longitude (geodetic), elevation, azimuth in rad; time of GPS week.
+/// Returns the delay of an L1 signal on the ground, m. Latitude, longitude (geodetic), elevation, azimuth in rad; time
+/// of GPS week.
 double klobuchar_delay_m(const KlobucharCoefficients& coefficients, double latitude, double longitude, double elevation,
                          double azimuth, double seconds_of_week);
 
-/// The vertical delay at a point of the ionosphere (latitude, longitude of the piercing point), m.
+/// Returns the vertical delay at a point of the ionosphere (latitude, longitude of the piercing point), m.
 double klobuchar_vertical_delay_m(const KlobucharCoefficients& coefficients, double latitude, double longitude,
                                   double seconds_of_week);
 
-/// Share of the electron content that lies above `altitude_m` (1 at the ground): a Chapman-like profile with its peak
-/// at 420 km and a scale height of 100 km (Montenbruck, Gill 2002: "Ionospheric correction for GPS tracking of LEO
-/// satellites"). Altitudes below the ground count as the ground.
+/// Returns the share of the electron content that lies above `altitude_m` (1 at the ground): a Chapman-like profile
+/// with its peak at 420 km and a scale height of 100 km (Montenbruck, Gill 2002: "Ionospheric correction for GPS
+/// tracking of LEO satellites"). Altitudes below the ground count as the ground.
 double electron_content_above(double altitude_m);
 
-/// Altitude of the thin shell that represents the electrons above `altitude_m`: half of them lie below it, m (the same
-/// source).
+/// Returns the altitude of the thin shell that represents the electrons above `altitude_m`: half of them lie below it,
+/// m (the same source).
 double shell_altitude_m(double altitude_m);
 
-/// Delay of an L1 signal at a point in or above the ionosphere, m: the model's vertical delay where the line of sight
-/// pierces that shell, the share above the point, slant by the shell's geometry, which holds for elevations below the
-/// horizontal too. Both vectors in ECEF; `line_of_sight` is the unit vector to the satellite.
+/// Returns the delay of an L1 signal at a point in or above the ionosphere, m: the model's vertical delay where the
+/// line of sight pierces that shell, the share above the point, slant by the shell's geometry, which holds for
+/// elevations below the horizontal too. Both vectors in ECEF; `line_of_sight` is the unit vector to the satellite.
 double klobuchar_delay_in_orbit_m(const KlobucharCoefficients& coefficients, const fsw::Vector3& position_ecef,
                                   const fsw::Vector3& line_of_sight, double seconds_of_week);
 

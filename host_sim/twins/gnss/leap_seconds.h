@@ -11,16 +11,16 @@ struct UtcOffset {
   int change_day = 1;   ///< that day of the week, 1 to 7 (Sunday is 1)
 };
 
-/// At `time`. Looks back for the last change for ten years, then returns week 0, day 1. Throws std::out_of_range before
-/// 1980-01-06.
+/// Returns the offset at `time`. Looks back for the last change for ten years, then returns week 0, day 1. Throws
+/// std::out_of_range before 1980-01-06.
 UtcOffset utc_offset_at(fsw::GpsTime time);
 
 struct CalendarTime {
   int year = 0;
   unsigned month = 0, day = 0, hour = 0, minute = 0;
-  unsigned millisecond = 0;  ///< of the minute
+  unsigned millisecond = 0;  ///< milliseconds of the minute
 };
-/// UTC of `time`, cut to milliseconds, for an offset that holds then.
+/// Returns UTC of `time`, cut to milliseconds, for an offset that holds then.
 CalendarTime utc_calendar(fsw::GpsTime time, const UtcOffset& offset);
 
 }  // namespace vbar::twins::gnss

@@ -102,7 +102,7 @@ class SubframeWriter {
   std::size_t position_ = 0;
 };
 
-constexpr double kUtcReferenceTime_s = 147456.0;  // of the week, a multiple of 4096 s
+constexpr double kUtcReferenceTime_s = 147456.0;  // seconds of the week, a multiple of 4096 s
 
 std::int64_t seconds_of_week(fsw::GpsTime time) {
   return week_time(System::kGps, time).ns_of_week / fsw::kNanosecondsPerSecond;

@@ -12,26 +12,26 @@
 
 namespace vbar::twins::gnss {
 
-/// The set as broadcast: every number rounded to the least significant bit of the message.
+/// Returns the set as broadcast, every number rounded to the least significant bit of the message.
 Ephemeris rounded_to_message(const Ephemeris& ephemeris);
 
-/// omega0 as the message has it: longitude of the node at the beginning of the system's week, rad in [-pi, pi].
+/// Returns omega0 as the message has it: longitude of the node at the beginning of the system's week, rad in [-pi, pi].
 double node_at_week_begin(const Ephemeris& ephemeris);
 
 /// Ten words of 24 bits, without parity, as a receiver writes them.
 using Subframe = std::array<std::uint8_t, 30>;
 
-/// Subframes 1 to 3 of the GPS LNAV message for a healthy satellite, user range accuracy index 0 (2.4 m).
-/// `transmission` is when subframe 1 begins; `issue` is 0 to 255 and becomes IODC and IODE.
-/// Throws std::out_of_range, naming satellite and number, where one does not fit its field.
+/// Returns subframes 1 to 3 of the GPS LNAV message for a healthy satellite, user range accuracy index 0 (2.4 m).
+/// `transmission` is when subframe 1 begins; `issue` is 0 to 255 and becomes IODC and IODE. Throws std::out_of_range,
+/// naming satellite and number, where one does not fit its field.
 std::array<Subframe, 3> lnav_subframes(const Ephemeris& ephemeris, int issue, fsw::GpsTime transmission);
 
-/// Page 18 of subframe 4: ionosphere and UTC parameters. `transmission` is when subframe 1 of the frame begins. Throws
-/// std::out_of_range where a number does not fit its field.
+/// Returns page 18 of subframe 4: ionosphere and UTC parameters. `transmission` is when subframe 1 of the frame begins.
+/// Throws std::out_of_range where a number does not fit its field.
 Subframe lnav_page_18(const BroadcastCorrections& corrections, const UtcOffset& utc, fsw::GpsTime transmission);
 
-/// A page of subframe 4 or 5 without content: the almanac of dummy satellite 0, alternating ones and zeros (IS-GPS-200N
-/// 20.3.3.5.1.2).
+/// Returns a page of subframe 4 or 5 without content: the almanac of dummy satellite 0, alternating ones and zeros
+/// (IS-GPS-200N 20.3.3.5.1.2).
 Subframe lnav_dummy_page(unsigned subframe, fsw::GpsTime transmission);
 
 }  // namespace vbar::twins::gnss

@@ -42,7 +42,7 @@ enum class TimeStatus : std::uint8_t {
 };
 
 /// Bits of the receiver status word.
-inline constexpr unsigned kTransmitOverrunBit = 8;  ///< of COM1; those of COM2 and COM3 follow
+inline constexpr unsigned kTransmitOverrunBit = 8;  ///< bit of COM1; those of COM2 and COM3 follow
 inline constexpr unsigned kPositionInvalidBit = 19;
 inline constexpr unsigned kClockModelInvalidBit = 22;
 
@@ -59,7 +59,7 @@ struct Header {
   }
 };
 
-/// What the tracking status word says of a channel's loops.
+/// State of a channel's loops in the tracking status word.
 struct TrackingState {
   unsigned state = 4;  ///< 1 search, 2 pull-in, 4 phase lock loop, 7 frequency lock loop
   bool phase_lock = true;
@@ -84,14 +84,14 @@ struct RangeRecord {
 };
 void append_range(Bytes& bytes, const Header& header, std::span<const RangeRecord> records);
 
-/// GPS ephemeris as subframes; `heard` is when the first began.
+/// Appends a GPS ephemeris as subframes; `heard` is when the first began.
 void append_rawephem(Bytes& bytes, const Header& header, const BroadcastSet& set, fsw::GpsTime heard);
-/// GPS ephemeris as numbers.
+/// Appends a GPS ephemeris as numbers.
 void append_gpsephem(Bytes& bytes, const Header& header, const BroadcastSet& set, fsw::GpsTime heard);
 void append_galephemeris(Bytes& bytes, const Header& header, const BroadcastSet& set);
 void append_bdsephemeris(Bytes& bytes, const Header& header, const BroadcastSet& set);
 
-/// Ionosphere and UTC; `utc` as of the header's time.
+/// Appends ionosphere and UTC; `utc` as of the header's time.
 void append_ionutc(Bytes& bytes, const Header& header, const BroadcastCorrections& corrections, const UtcOffset& utc);
 
 /// BESTXYZ: a single-point solution, or "insufficient observations" if `solved` is false.
@@ -106,7 +106,7 @@ struct PositionRecord {
 };
 void append_bestxyz(Bytes& bytes, const Header& header, const PositionRecord& position);
 
-/// BESTPOS: the same in geodetic coordinates, height above the ellipsoid.
+/// Appends BESTPOS: the position in geodetic coordinates, height above the ellipsoid.
 void append_bestpos(Bytes& bytes, const Header& header, const PositionRecord& position);
 
 /// TIME: the clock's offset as the receiver estimates it (GPS time = receiver time - offset), and UTC.
@@ -120,7 +120,7 @@ void append_time(Bytes& bytes, const Header& header, const ClockRecord& clock, c
 /// VERSION: one component, the receiver itself.
 struct VersionRecord {
   std::string_view model, serial, hardware, software, boot;  ///< up to 16 characters
-  std::string_view date, time;                               ///< of the software, up to 12 characters
+  std::string_view date, time;                               ///< date of the software, up to 12 characters
 };
 void append_version(Bytes& bytes, const Header& header, const VersionRecord& version);
 
@@ -132,7 +132,7 @@ struct StatusEvent {
 };
 void append_status_event(Bytes& bytes, const Header& header, const StatusEvent& event);
 
-/// The answer to the binary command `id`.
+/// Appends the answer to the binary command `id`.
 void append_response(Bytes& bytes, const Header& header, std::uint16_t id, std::uint32_t response,
                      std::string_view text);
 

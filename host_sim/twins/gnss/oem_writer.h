@@ -12,10 +12,10 @@
 
 namespace vbar::twins::gnss::oem {
 
-/// NovAtel's CRC-32: the standard polynomial, but initialised with 0 and not inverted.
+/// Computes NovAtel's CRC-32: the standard polynomial, but initialised with 0 and not inverted.
 std::uint32_t crc32(std::span<const std::uint8_t> bytes);
 
-/// The header is written at once, its length and the CRC by finish().
+/// Writer of a message. The header is written at once, its length and the CRC by finish().
 class MessageWriter {
  public:
   MessageWriter(Bytes& bytes, MessageId id, const Header& header, bool is_response = false);
@@ -32,7 +32,7 @@ class MessageWriter {
   void zeros(int count) {
     for (int k = 0; k < count; ++k) u8(0);
   }
-  /// A field of `size` characters, cut or filled with zeros.
+  /// Writes a field of `size` characters, cut or filled with zeros.
   void text(std::string_view value, std::size_t size) {
     for (std::size_t k = 0; k < size; ++k) u8(k < value.size() ? static_cast<std::uint8_t>(value[k]) : 0);
   }

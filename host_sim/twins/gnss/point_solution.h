@@ -29,7 +29,7 @@ struct PointSolution {
   double clock_drift = 0.0;  ///< estimated, s/s
 };
 
-/// None with fewer than four satellites or a singular geometry.
+/// Solves for position, velocity and clock; none with fewer than four satellites or a singular geometry.
 std::optional<PointSolution> solve_point(const std::vector<PointResidual>& residuals);
 
 }  // namespace vbar::twins::gnss

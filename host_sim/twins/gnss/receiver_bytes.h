@@ -19,14 +19,14 @@ namespace vbar::twins::gnss {
 /// The truth about the body that carries the receiver.
 struct BodyTruth {
   fsw::GpsTime time;                                 ///< whole milliseconds
-  fsw::Vector3 position_eci = fsw::Vector3::Zero();  ///< of the centre of mass
+  fsw::Vector3 position_eci = fsw::Vector3::Zero();  ///< position of the centre of mass
   fsw::Vector3 velocity_eci = fsw::Vector3::Zero();
   Eigen::Quaterniond q_body_eci =
       Eigen::Quaterniond::Identity();                  ///< the known attitude of the body; body axes from ECI
   fsw::Vector3 rate_body_eci = fsw::Vector3::Zero();   ///< angular velocity against ECI, rad/s, ECI components
   fsw::Matrix3 R_ecef_eci = fsw::Matrix3::Identity();  ///< the truth's own Earth rotation at `time`
-  // For a receiver that requests them; otherwise empty.
-  std::optional<fsw::Vector3> acceleration_eci;           ///< of the centre of mass, m/s^2
+  // For a receiver that requests them; empty for others.
+  std::optional<fsw::Vector3> acceleration_eci;           ///< acceleration of the centre of mass, m/s^2
   std::optional<fsw::Vector3> angular_acceleration_body;  ///< rad/s^2, body axes
 };
 
@@ -42,14 +42,14 @@ struct ReceiverOutput {
   std::vector<std::uint8_t> bytes;
   bool is_epoch = true;      ///< false: nothing is delivered, a trajectory sample was taken in between two epochs
   fsw::Duration delay = {};  ///< from the call until the last byte was available, >= 0
-  /// Of bytes that a device measured before the call: the attitude then. Empty: the epoch is that of the call.
+  /// Attitude at the measurement of bytes that a device measured before the call. Empty: the epoch is that of the call.
   std::optional<EpochAttitude> measured = std::nullopt;
   bool bytes_bypass_host = false;  ///< the flight computer receives the bytes by a line of its own
   std::vector<Note> notes = {};
   std::string failure = {};  ///< if the receiver gave no data for this epoch: the reason, one sentence
 };
 
-/// The truth about one spacecraft, which must have an attitude.
+/// Returns the truth about one spacecraft, which must have an attitude.
 [[nodiscard]] BodyTruth body_truth(const TruthSnapshot& truth, const SpacecraftTruth& spacecraft);
 
 class ReceiverBytes {
@@ -66,13 +66,13 @@ class ReceiverBytes {
   [[nodiscard]] virtual std::vector<Note> statistics() const { return {}; }
   [[nodiscard]] virtual std::optional<io::WiredReceiver> wired_receiver() const { return std::nullopt; }
 
-  /// Between calls of output_at; empty: the sensor's period.
+  /// Returns the period between calls of output_at; empty: the sensor's period.
   [[nodiscard]] virtual std::optional<fsw::Duration> call_period() const { return std::nullopt; }
 
-  /// Once every period, in order.
+  /// Measures once every period, in order.
   virtual ReceiverOutput output_at(const BodyTruth& truth) = 0;
 
-  /// As that of PacketSource.
+  /// Upsets the receiver as PacketSource::upset().
   virtual bool upset(const Upset& upset) {
     static_cast<void>(upset);
     return false;

@@ -16,7 +16,8 @@ CrystalOscillator::CrystalOscillator(const ClockSettings& settings, std::uint64_
 void CrystalOscillator::advance(double elapsed_s) {
   const double s_f = white_variance_rate_;
   const double s_g = random_walk_variance_rate_;
-  // Of the offset's S_g t^3/3, t^3/4 goes along with the drift's step (half of it times t); t^3/12 is its own.
+  // The offset's S_g t^3/3 consists of t^3/4, which goes along with the drift's step (half of that step times t), and
+  // of its own t^3/12.
   const double drift_step = stream_.normal() * std::sqrt(s_g * elapsed_s);
   const double rest_variance = s_f * elapsed_s + s_g * elapsed_s * elapsed_s * elapsed_s / 12.0;
   offset_s_ += (drift_ + drift_step / 2.0) * elapsed_s + stream_.normal() * std::sqrt(rest_variance);

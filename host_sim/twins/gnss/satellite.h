@@ -25,11 +25,11 @@ struct SatelliteId {
   constexpr auto operator<=>(const SatelliteId&) const = default;
 };
 
-/// "G05", "E11", "C03": RINEX names, which also name random streams.
+/// Returns the name "G05", "E11", "C03": RINEX names, which also name random streams.
 std::string name_of(SatelliteId satellite);
 
-/// BeiDou's satellites 1 to 5 and 59 to 63 are geostationary (BDS-SIS-ICD-B1I-3.0, 5.2.4.12): their own orbit frame and
-/// navigation message.
+/// Whether a satellite is geostationary. BeiDou's satellites 1 to 5 and 59 to 63 are geostationary
+/// (BDS-SIS-ICD-B1I-3.0, 5.2.4.12): their own orbit frame and navigation message.
 constexpr bool is_geostationary(SatelliteId satellite) {
   return satellite.system == System::kBeidou && (satellite.prn <= 5 || satellite.prn >= 59);
 }
@@ -64,14 +64,15 @@ constexpr double wavelength_m(Signal signal) {
   return fsw::gnss::kSpeedOfLight / structure(signal).frequency_hz;
 }
 
-/// The delay of code against the satellite's clock, s: the clock refers to a combination of two signals (IS-GPS-200N
-/// 20.3.3.3.3.2; Galileo OS SIS ICD 2.1, 5.1.5; BDS-SIS-ICD-B1I-3.0, 5.2.4.10).
+/// Returns the delay of code against the satellite's clock, s: the clock refers to a combination of two signals
+/// (IS-GPS-200N 20.3.3.3.3.2; Galileo OS SIS ICD 2.1, 5.1.5; BDS-SIS-ICD-B1I-3.0, 5.2.4.10).
 constexpr double code_delay_s(Signal signal, double group_delay_s) {
   constexpr double kGamma = (fsw::gnss::kL1_Hz / fsw::gnss::kL2_Hz) * (fsw::gnss::kL1_Hz / fsw::gnss::kL2_Hz);
   return signal == Signal::kGpsL2 ? kGamma * group_delay_s : group_delay_s;
 }
 
-/// Delay by the ionosphere relative to that of GPS L1: group delay goes with the inverse square of the frequency.
+/// Returns the delay by the ionosphere relative to that of GPS L1: group delay goes with the inverse square of the
+/// frequency.
 constexpr double ionosphere_scale(Signal signal) {
   const double ratio = fsw::gnss::kL1_Hz / structure(signal).frequency_hz;
   return ratio * ratio;

@@ -16,7 +16,7 @@ class AntennaPattern {
   /// std::runtime_error naming file and line.
   static AntennaPattern load(const std::filesystem::path& data_directory);
 
-  /// dB below boresight at `cosine` of the angle, linear between the file's angles.
+  /// Returns the attenuation, dB below boresight at `cosine` of the angle, linear between the file's angles.
   [[nodiscard]] double attenuation_db(double cosine) const;
 
  private:
@@ -27,19 +27,20 @@ class AntennaPattern {
   std::vector<Node> nodes_;
 };
 
-/// C/N0 (dB-Hz) at `distance_m` from a satellite with the specified power on the ground at 5 deg elevation
+/// Returns C/N0 (dB-Hz) at `distance_m` from a satellite with the specified power on the ground at 5 deg elevation
 /// (25,240 km for GPS), spread by free space; noise of antenna and amplifier chain after Friis.
 double carrier_to_noise_dbhz(const LinkBudgetSettings& settings, Signal signal, double distance_m,
                              double antenna_attenuation_db);
 
-/// One sigma of the code loop (m), coherent early minus late power discriminator:
+/// Returns one sigma of the code loop (m), coherent early minus late power discriminator:
 ///   (c/Rc) sqrt(B d/(2 C/N0) (1 + 2/((2-d) T C/N0)))   (Kaplan, Hegarty 2017, 8.4.3).
 double code_noise_m(const TrackingSettings& settings, Signal signal, double cn0_dbhz);
 
-/// One sigma of the carrier loop (m): (lambda/2pi) sqrt(B/(C/N0) (1 + 1/(2 T C/N0)))   (the same, 8.3.3).
+/// Returns one sigma of the carrier loop (m): (lambda/2pi) sqrt(B/(C/N0) (1 + 1/(2 T C/N0)))   (the same, 8.3.3).
 double carrier_noise_m(const TrackingSettings& settings, Signal signal, double cn0_dbhz);
 
-/// One sigma of the range rate (m/s): the change of a noisy carrier over the loop's time constant, sqrt(2) sigma B.
+/// Returns one sigma of the range rate (m/s): the change of a noisy carrier over the loop's time constant, sqrt(2)
+/// sigma B.
 double range_rate_noise_mps(const TrackingSettings& settings, Signal signal, double cn0_dbhz);
 
 }  // namespace vbar::twins::gnss

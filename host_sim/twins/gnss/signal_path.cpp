@@ -54,7 +54,8 @@ SignalPath path_from(const StateAt& state_at, const AntennaState& antenna, doubl
   path.shapiro_m = shapiro_delay_m(sent.position.norm(), antenna.position_ecef.norm(), range_m);
   path.satellite_clock_s = sent.clock_s;
   path.satellite_clock_drift = sent.clock_drift;
-  // Of |s(t - range/c) - r(t)| in the inertial frame that coincides with the Earth-fixed one at reception.
+  // Range rate is the derivative of |s(t - range/c) - r(t)| in the inertial frame that coincides with the Earth-fixed
+  // one at reception.
   const Vector3 rotation = fsw::gnss::kEarthRateGps * Vector3::UnitZ();
   const Vector3 satellite_velocity = sent.velocity + rotation.cross(sent.position);
   const Vector3 antenna_velocity = antenna.velocity_ecef + rotation.cross(antenna.position_ecef);

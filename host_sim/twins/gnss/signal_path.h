@@ -31,17 +31,18 @@ struct SignalPath {
   double satellite_clock_drift = 0.0;
 };
 
-/// Whether a satellite at this position (Earth-fixed frame of reception) is visible under `settings`.
+/// Returns whether a satellite at this position (Earth-fixed frame of reception) is visible under `settings`.
 bool is_visible(const fsw::Vector3& satellite_ecef, const AntennaState& antenna, const VisibilitySettings& settings);
 
-/// Delay of a signal in the Earth's field, m, from the distances of both ends from the Earth's centre.
+/// Returns the delay of a signal in the Earth's field, m, from the distances of both ends from the Earth's centre.
 double shapiro_delay_m(double transmitter_radius_m, double receiver_radius_m, double range_m);
 
-/// The true path from satellite `index`; empty if it is not visible under `settings`.
+/// Returns the true path from satellite `index`; empty if it is not visible under `settings`.
 std::optional<SignalPath> visible_path(const Constellation& constellation, std::size_t index,
                                        const AntennaState& antenna, const VisibilitySettings& settings);
 
-/// The path that a broadcast set predicts to the true antenna: the prediction of the receiver's own point solution.
+/// Returns the path that a broadcast set predicts to the true antenna: the prediction of the receiver's own point
+/// solution.
 SignalPath broadcast_path(const Ephemeris& ephemeris, const AntennaState& antenna);
 
 }  // namespace vbar::twins::gnss

@@ -14,14 +14,14 @@ struct WeekTime {
   [[nodiscard]] double seconds_of_week() const { return static_cast<double>(ns_of_week) / 1e9; }
 };
 
-/// GPS time minus the system's own time: BeiDou time began on 2006-01-01 UTC, when GPS-UTC was 14 s. Galileo
+/// Returns GPS time minus the system's own time: BeiDou time began on 2006-01-01 UTC, when GPS-UTC was 14 s. Galileo
 /// and GPS time are taken as equal (their real offset of nanoseconds is inseparable from a receiver's code bias).
 constexpr fsw::Duration gps_minus_system_time(System system) {
   return fsw::duration_of_seconds(system == System::kBeidou ? 14 : 0);
 }
 
-/// `time`, not before 2006-01-01 GPS + 14 s for BeiDou, in the system's own weeks; Galileo's are counted like GPS's, as
-/// receivers write them.
+/// Returns week and seconds of `time`, not before 2006-01-01 GPS + 14 s for BeiDou, in the system's own weeks;
+/// Galileo's are counted like GPS's, as receivers write them.
 constexpr WeekTime week_time(System system, fsw::GpsTime time) {
   constexpr int kGpsWeekOfBeidouZero = 1356;
   const std::int64_t ns = (time - gps_minus_system_time(system)).ns;

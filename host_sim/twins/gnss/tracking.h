@@ -21,13 +21,13 @@ struct SignalTrack {
       : signal(of), stream(draws), carrier_wander_m(wander_m) {}
 
   Signal signal;
-  engine::RandomStream stream;           ///< of its slips, ambiguities and noise
+  engine::RandomStream stream;           ///< stream of its slips, ambiguities and noise
   engine::GaussMarkov carrier_wander_m;  ///< continues whether the signal is tracked or not
   bool tracking = false;
-  fsw::GpsTime lock_since;            ///< of the continuous count, as the receiver reports it
+  fsw::GpsTime lock_since;            ///< start of the continuous count, as the receiver reports it
   std::int64_t ambiguity_cycles = 0;  ///< added to the true phase
   int slips = 0;                      ///< detected and undetected, since the start
-  double cn0_dbhz = 0.0;              ///< of the last update
+  double cn0_dbhz = 0.0;              ///< C/N0 of the last update
 };
 
 class SatelliteTracking {
@@ -37,8 +37,8 @@ class SatelliteTracking {
   SatelliteTracking(SatelliteId satellite, const StartSettings& start, const TrackingSettings& tracking,
                     std::uint64_t seed, std::string_view receiver);
 
-  /// One epoch. `cn0_dbhz` has one value for each of signals(), in order; empty if the satellite is not visible.
-  /// `first` is the epoch at which the receiver was switched on.
+  /// Updates the tracking by one epoch. `cn0_dbhz` has one value for each of signals(), in order; empty if the
+  /// satellite is not visible. `first` is the epoch at which the receiver was switched on.
   void update(fsw::GpsTime now, bool first, const std::vector<double>& cn0_dbhz);
 
   /// Loses all signals: they are searched at the next update.
@@ -51,7 +51,7 @@ class SatelliteTracking {
   [[nodiscard]] std::vector<SignalTrack>& signals() { return signals_; }
   [[nodiscard]] const std::vector<SignalTrack>& signals() const { return signals_; }
 
-  /// Start of the continuous reception of the navigation message; empty without reception.
+  /// Returns the start of the continuous reception of the navigation message; empty without reception.
   [[nodiscard]] std::optional<fsw::GpsTime> heard_since() const { return heard_since_; }
 
  private:

@@ -12,7 +12,7 @@ namespace {
 
 using files::TextLines;
 
-/// Whether a type of a value says that it is predicted. Series C04 has no types.
+/// Whether a value is predicted, by its type. Series C04 has no types.
 bool is_prediction(const TextLines& lines, std::string_view type) {
   if (type == "prediction") return true;
   if (!type.empty() && type != "final")

@@ -1,6 +1,6 @@
 #pragma once
 // The formats of Earth orientation that are read as published. Each is recognised by its contents, whatever the name of
-// the file; each has its file here and its line in the list.
+// the file; each has its functions here and its line in the list.
 
 #include <span>
 #include <string>
@@ -37,7 +37,7 @@ struct OrientationFormat {
 [[nodiscard]] OrientationDays read_eop_c04(std::string_view text, const std::string& file);
 
 // finals2000A and EOP C04 as the IERS data centre gives them as CSV: one set of column names, the types "final" and
-// "prediction" in finals2000A alone. Offsets of the nutation of IAU 1980 are refused.
+// "prediction" in finals2000A alone. Offsets of the nutation of IAU 1980 are rejected.
 [[nodiscard]] bool is_iers_csv(std::string_view text);
 [[nodiscard]] OrientationDays read_iers_csv(std::string_view text, const std::string& file);
 
@@ -49,11 +49,11 @@ struct OrientationFormat {
 
 [[nodiscard]] std::span<const OrientationFormat> orientation_formats();
 
-/// The days of a text in any of the formats. Throws files::FormatError; for an unknown format it names all.
+/// Reads the days of a text in any of the formats. Throws files::FormatError; for an unknown format it names all.
 [[nodiscard]] OrientationDays read_orientation(std::string_view text, const std::string& file);
 
-/// Values of one row in the units of the publications. Refuses what no Earth orientation since 1962 has been near,
-/// which is what other units or another nutation model give.
+/// Values of one row in the units of the publications. orientation_of() rejects values that no Earth orientation since
+/// 1962 has been near, as other units or another nutation model give.
 struct PublishedOrientation {
   double x_arcsec = 0.0, y_arcsec = 0.0, ut1_minus_utc_s = 0.0, dx_arcsec = 0.0, dy_arcsec = 0.0;
 };

@@ -20,7 +20,7 @@ Kind kind_of(const TextLines& lines, std::string_view type) {
   lines.refuse(files::quoted(type), "an F10.7_DATA_TYPE of OBS, INT, PRD or PRM");
 }
 
-/// Where the columns that are needed stand.
+/// Places of the columns that are needed.
 struct Columns {
   explicit Columns(const PublishedCsv& table)
       : date(table.place("DATE")),

@@ -12,7 +12,8 @@ namespace {
 using files::TextLines;
 using Kind = SpaceWeather::Kind;
 
-// MONTHLY_FIT: of the files that AGI distributed with STK, in place of the monthly predictions or behind them.
+// MONTHLY_FIT is a section of the files that AGI distributed with STK, in place of the monthly predictions or behind
+// them.
 constexpr std::array<std::string_view, 4> kSections{"OBSERVED", "DAILY_PREDICTED", "MONTHLY_PREDICTED", "MONTHLY_FIT"};
 constexpr std::array<Kind, kSections.size()> kKinds{Kind::kObserved, Kind::kPredictedDaily, Kind::kPredictedMonthly,
                                                     Kind::kPredictedMonthly};

@@ -27,7 +27,7 @@ double flux_of(const files::TextLines& lines, double value) {
   return checked(lines, value, kLowestFlux, kLargestFlux, "a flux F10.7 (1e-22 W/m^2/Hz)");
 }
 
-/// A flux of 0 stands for a day without a measurement in files of before 2020.
+/// Whether a flux was measured: 0 marks a day without a measurement in files of before 2020.
 bool is_measured(const std::optional<double>& flux) {
   return flux && *flux != 0.0;
 }

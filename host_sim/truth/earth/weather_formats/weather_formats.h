@@ -1,6 +1,6 @@
 #pragma once
 // The formats of space weather that are read as published. Each is recognised by its contents, whatever the name of the
-// file; each has its file here and its line in the list.
+// file; each has its functions here and its line in the list.
 
 #include <optional>
 #include <span>
@@ -22,7 +22,8 @@ inline constexpr double kLargestFlux = 1000.0;
 struct WeatherFormat {
   std::string_view name;
   bool (*recognises)(std::string_view text);
-  /// Throws files::FormatError. Of days before GPS time (1980-01-06) only the date is looked at; they are left out.
+  /// Reads the days of a text. Throws files::FormatError. Only the date is read of days before GPS time (1980-01-06),
+  /// which are left out.
   WeatherDays (*read)(std::string_view text, const std::string& file);
 };
 
@@ -41,10 +42,10 @@ struct WeatherFormat {
 
 [[nodiscard]] std::span<const WeatherFormat> weather_formats();
 
-/// The days of a text in any of the formats. Throws files::FormatError; for an unknown format it names all.
+/// Reads the days of a text in any of the formats. Throws files::FormatError; for an unknown format it names all.
 [[nodiscard]] WeatherDays read_weather(std::string_view text, const std::string& file);
 
-/// What both CSSI formats hold of one row; empty where the row is blank.
+/// Values that both CSSI formats hold of one row; empty where the row is blank.
 struct PublishedWeather {
   int mjd_utc = 0;
   std::array<std::optional<double>, 8> ap;
@@ -54,10 +55,10 @@ struct PublishedWeather {
 /// Collects the rows of a CSSI file as days without gaps.
 class WeatherCollector {
  public:
-  /// A day that follows the one before. If a value is missing, or a flux 0, the day is kept as one without data.
+  /// Adds a day that follows the one before. If a value is missing, or a flux 0, the day is kept as one without data.
   void add_day(const files::TextLines& lines, const PublishedWeather& row, SpaceWeather::Kind kind);
 
-  /// The first of a month, which has no geomagnetic index: the days since the row before get fluxes by linear
+  /// Adds the first day of a month, which has no geomagnetic index: the days since the row before get fluxes by linear
   /// interpolation and SpaceWeather::kAssumedAp. A month within the days that are there, or without a flux, is left
   /// out.
   void add_month(const files::TextLines& lines, const PublishedWeather& row);

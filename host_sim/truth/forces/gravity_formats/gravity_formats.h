@@ -1,6 +1,6 @@
 #pragma once
-// The formats of gravity models that are read as published. Each is recognised by its contents; each has its file here
-// and its line in the list.
+// The formats of gravity models that are read as published. Each is recognised by its contents; each has its functions
+// here and its line in the list.
 
 #include <span>
 #include <string>
@@ -13,7 +13,7 @@ namespace vbar::truth {
 struct GravityFormat {
   std::string_view name;
   bool (*recognises)(std::string_view text);
-  /// The model up to `degree`. Throws files::FormatError, and std::invalid_argument for a degree that it lacks.
+  /// Reads the model up to `degree`. Throws files::FormatError, and std::invalid_argument for a degree that it lacks.
   GravityCoefficients (*read)(std::string_view text, const std::string& file, int degree);
 };
 
@@ -29,11 +29,11 @@ struct GravityFormat {
 
 [[nodiscard]] std::span<const GravityFormat> gravity_formats();
 
-/// The model of a text in any of the formats, up to `degree`. Throws files::FormatError; for an unknown format it names
-/// all; std::invalid_argument for a degree that the model lacks.
+/// Reads the model of a text in any of the formats, up to `degree`. Throws files::FormatError; for an unknown format it
+/// names all; std::invalid_argument for a degree that the model lacks.
 [[nodiscard]] GravityCoefficients read_gravity(std::string_view text, const std::string& file, int degree);
 
-inline constexpr int kHighestDegree = 2190;  ///< of the largest published models: limits damaged headers
+inline constexpr int kHighestDegree = 2190;  ///< degree of the largest published models: limits damaged headers
 
 void check_degree(const std::string& file, int degree, int max_degree);
 

@@ -47,7 +47,7 @@ Norm norm_of(const TextLines& lines, std::string_view name) {
 void take_keyword(const TextLines& lines, const Words& words, Header& header) {
   if (words.size() < 2) return;
   const std::string_view key = words[0];
-  // A sphere's worth of any planet in SI: kilometres are refused by the check of both together.
+  // The limits hold any planet in SI units; the check of both together rejects kilometres.
   if (key == "earth_gravity_constant" || key == "gravity_constant") header.gm = positive(lines, words, 1e21);
   if (key == "radius") header.radius = positive(lines, words, 1e9);
   if (key == "max_degree") header.max_degree = degree_of(lines, words);
@@ -58,7 +58,7 @@ void take_keyword(const TextLines& lines, const Words& words, Header& header) {
     lines.refuse(fmt::format("product_type {}", words[1]), "gravity_field");
 }
 
-/// Free text stands before the keywords.
+/// Reads the header, in which free text may precede the keywords.
 Header read_header(TextLines& lines) {
   Header header;
   while (lines.next()) {

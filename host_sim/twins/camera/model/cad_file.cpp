@@ -152,7 +152,8 @@ CadModel load_cad_model(const CadSource& source) {
   if (scene == nullptr) refuse(file, fmt::format("no CAD file that can be read: {}", importer.GetErrorString()));
   std::vector<Material> materials;
   std::vector<Triangle> triangles;
-  std::map<unsigned, std::size_t> index;  // of the materials that faces use; assimp adds a default to every file
+  std::map<unsigned, std::size_t>
+      index;  // indices of the materials that faces use; assimp adds a default to every file
   for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
     const aiMesh& mesh = *scene->mMeshes[m];
     const unsigned used = source.materials == CadMaterials::kSurface ? 0 : mesh.mMaterialIndex;

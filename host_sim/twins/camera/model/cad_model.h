@@ -17,7 +17,7 @@ struct Material {
   std::string name;
   std::array<double, 3> diffuse{};   ///< albedo of the Lambert part (Kd of an MTL file)
   std::array<double, 3> specular{};  ///< reflectivity of the specular part at normal incidence (Ks)
-  double exponent = 0.0;             ///< of the specular lobe (Ns): 0 dull, 1000 nearly a mirror
+  double exponent = 0.0;             ///< exponent of the specular lobe (Ns): 0 dull, 1000 nearly a mirror
 
   [[nodiscard]] double grey_diffuse() const { return (diffuse[0] + diffuse[1] + diffuse[2]) / 3.0; }
   [[nodiscard]] double grey_specular() const { return (specular[0] + specular[1] + specular[2]) / 3.0; }
@@ -25,26 +25,27 @@ struct Material {
 
 struct Triangle {
   std::array<fsw::Vector3, 3> corners;  ///< body frame, m
-  std::array<fsw::Vector3, 3> normals;  ///< of the smooth surface at the corners, unit vectors; zero: the face is flat
-  std::size_t material = 0;             ///< index of CadModel::materials
+  std::array<fsw::Vector3, 3>
+      normals;               ///< normals of the smooth surface at the corners, unit vectors; zero: the face is flat
+  std::size_t material = 0;  ///< index of CadModel::materials
 };
 
 struct CadModel {
   std::string source;  ///< name in messages: the file
   std::vector<Material> materials;
   std::vector<Triangle> triangles;
-  fsw::Vector3 centre = fsw::Vector3::Zero();  ///< of a sphere around everything, body frame, m
+  fsw::Vector3 centre = fsw::Vector3::Zero();  ///< centre of a sphere around everything, body frame, m
   double radius_m = 0.0;
-  std::size_t faces_without_area = 0;  ///< of the file that are not in `triangles`
+  std::size_t faces_without_area = 0;  ///< number of faces of the file that are not in `triangles`
 };
 
 inline constexpr std::size_t kMaxMaterials = 64;
 inline constexpr double kMinModelRadiusM = 0.05;
 inline constexpr double kMaxModelRadiusM = 100.0;
 
-/// A model of these triangles with its bounding sphere, without the faces of zero area. Throws std::runtime_error,
-/// naming `source` and what is wrong: no faces, a corner that is not finite, more than 1 % of the faces without area, a
-/// sphere outside kMinModelRadiusM to kMaxModelRadiusM, no or too many materials.
+/// Makes a model of these triangles with its bounding sphere, without the faces of zero area. Throws
+/// std::runtime_error, naming `source` and what is wrong: no faces, a corner that is not finite, more than 1 % of the
+/// faces without area, a sphere outside kMinModelRadiusM to kMaxModelRadiusM, no or too many materials.
 CadModel make_cad_model(std::string source, std::vector<Triangle> triangles, std::vector<Material> materials);
 
 /// Throws std::runtime_error, naming `source` and the material, unless reflectivities lie in 0 to 1, the grey of both
@@ -56,7 +57,7 @@ void check_materials(const std::string& source, const std::vector<Material>& mat
 /// the source names a surface for it.
 CadModel load_cad_model(const CadSource& source);
 
-/// Of a file in metres and body axes.
+/// Reads a CAD file in metres and body axes.
 CadModel load_cad_model(const std::filesystem::path& file);
 
 }  // namespace vbar::twins::camera

@@ -12,12 +12,12 @@ namespace vbar::twins::camera {
 /// Models by the names that views refer to.
 using CadSources = std::map<std::string, CadSource>;
 
-/// Loads the CAD file of every model; throws std::runtime_error as load_cad_model and
-/// TargetRenderer do. The returned renderer throws std::invalid_argument for an unknown model, and
-/// for a camera inside the sphere around a body. Copies of it share the models; one call at a time among them all.
+/// Loads the CAD file of every model; throws std::runtime_error as load_cad_model and TargetRenderer do. The returned
+/// renderer throws std::invalid_argument for an unknown model, and for a camera inside the sphere around a body. Copies
+/// of the renderer share the models; one call at a time among all copies.
 ObjectRenderer cad_objects(const CadSources& models);
 
-/// Their outlines; likewise.
+/// Loads the outlines of the models; throws as cad_objects().
 ObjectCover cad_covers(const CadSources& models);
 
 }  // namespace vbar::twins::camera

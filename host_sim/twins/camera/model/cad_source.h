@@ -13,18 +13,18 @@ struct PlainSurface {
   double diffuse = 0.0, specular = 0.0, exponent = 0.0;
 };
 
-/// Which reflectivities the faces have.
+/// Source of the reflectivities of the faces.
 enum class CadMaterials {
-  kFile,     ///< those of the file; refused where they reflect more than they receive
+  kFile,     ///< those of the file; rejected where they reflect more than they receive
   kScaled,   ///< those of the file, both parts divided by their sum where that is more than 1
   kSurface,  ///< the surface, whatever materials the file has
 };
 
-/// A point p of the file lies at R_body_file (unit_m p - origin_m) in the body frame.
+/// File and its axes: a point p of the file lies at R_body_file (unit_m p - origin_m) in the body frame.
 struct CadSource {
   std::filesystem::path file;
   double unit_m = 1.0;                           ///< the unit of the file's coordinates
-  fsw::Vector3 origin_m = fsw::Vector3::Zero();  ///< of the body frame, along the axes of the file
+  fsw::Vector3 origin_m = fsw::Vector3::Zero();  ///< origin of the body frame, along the axes of the file
   fsw::Matrix3 R_body_file = fsw::Matrix3::Identity();
   std::optional<PlainSurface> surface{};
   CadMaterials materials = CadMaterials::kFile;

@@ -16,7 +16,7 @@ class GlContext {
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;
 
-  /// During its lifetime the context is current in the calling thread, afterwards in none.
+  /// Scope during whose lifetime the context is current in the calling thread, afterwards in none.
   class Current {
    public:
     explicit Current(GlContext& context);

@@ -14,8 +14,8 @@ class Silhouette {
  public:
   explicit Silhouette(const CadModel& model);
 
-  /// Covered fractions, 0 to 1 in quarters (2 x 2 points a pixel), rows of `region`. `origin_camera`: of the model, m,
-  /// all of it in front of the camera.
+  /// Draws covered fractions, 0 to 1 in quarters (2 x 2 points a pixel), rows of `region`. `origin_camera`: origin of
+  /// the model, m; the whole model is in front of the camera.
   void draw(const Projection& optics, const fsw::Vector3& origin_camera, const fsw::Matrix3& R_camera_body,
             const Region& region, std::vector<float>& covered);
 

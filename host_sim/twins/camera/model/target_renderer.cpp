@@ -132,7 +132,7 @@ struct TargetRenderer::Drawing {
   std::optional<GlTriangles> triangles;
   SizedBuffers<GlShadowMap> shadow_maps;
   SizedBuffers<GlPicture> pictures;
-  GlShadowMap* shadow_map = nullptr;  // of this image
+  GlShadowMap* shadow_map = nullptr;  // shadow map of this image
   GlPicture* picture = nullptr;
   std::optional<GlTable> earth_light;  // for the Earth's half-angle whose sine is:
   double earth_table_sine = -1.0;

@@ -17,7 +17,7 @@ namespace vbar::twins::camera {
 
 /// One body and its illumination. Camera axes: z boresight, x right, y down; the body may be out of the field.
 struct TargetView {
-  fsw::Vector3 position_camera = fsw::Vector3::Zero();  ///< of the body frame's origin from the camera, m
+  fsw::Vector3 position_camera = fsw::Vector3::Zero();  ///< position of the body frame's origin from the camera, m
   fsw::Matrix3 R_camera_body = fsw::Matrix3::Identity();
   fsw::Vector3 sun_camera = fsw::Vector3::UnitZ();    ///< unit vector from the body towards the Sun
   double sun_photons_per_m2_s = 0.0;                  ///< on an area that faces the Sun, out of any shadow
@@ -33,7 +33,7 @@ class TargetRenderer {
   static constexpr int kMinTexels = 128;   ///< on a side of the picture
   static constexpr int kMaxTexels = 2048;  ///< larger bodies get larger texels than asked for
 
-  /// Copies what it needs of the model. Throws std::runtime_error if there is no OpenGL.
+  /// Copies the parts of the model that it needs. Throws std::runtime_error if there is no OpenGL.
   explicit TargetRenderer(const CadModel& model);
   ~TargetRenderer();
   TargetRenderer(const TargetRenderer&) = delete;
@@ -45,10 +45,10 @@ class TargetRenderer {
   /// not finite or the camera is inside the sphere around the body.
   void render(const TargetView& view, std::vector<LightSample>& out);
 
-  /// Other materials for the faces, as many as the model has. Throws std::runtime_error as check_materials does.
+  /// Sets other materials for the faces, as many as the model has. Throws std::runtime_error as check_materials does.
   void set_materials(std::span<const Material> materials);
 
-  /// Of the last picture, on a side.
+  /// Returns the number of texels on a side of the last picture.
   [[nodiscard]] int texels() const;
 
  private:

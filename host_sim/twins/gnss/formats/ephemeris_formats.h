@@ -1,6 +1,6 @@
 #pragma once
 // The formats of broadcast ephemerides that are read as published. Each is recognised by its contents; each has its
-// file here and its line in the list.
+// functions here and its line in the list.
 
 #include <span>
 #include <string>
@@ -23,15 +23,15 @@ struct EphemerisFormat {
 
 // RINEX navigation files, versions 2.xx (GPS), 3.xx and 4.xx (GPS LNAV, Galileo I/NAV, BeiDou D1 and D2). Left out, and
 // named in the note, are records of other systems and messages, and sets that cannot be read or cannot be right, as
-// merged files hold some. Of each satellite one set: that whose reference time is nearest to noon of the file's day,
-// which is the day of the median reference time. Refused are files whose records have no valid structure, and those
-// with no set of the systems in use and nothing of another system.
+// merged files hold some. One set of each satellite is used: that whose reference time is nearest to noon of the file's
+// day, which is the day of the median reference time. Files whose records have no valid structure are rejected, and so
+// are those with no set of the systems in use and nothing of another system.
 [[nodiscard]] bool is_rinex(std::string_view text);
 [[nodiscard]] EphemerisFile read_rinex(std::string_view text, const std::string& file, const SystemSet& used);
 
 [[nodiscard]] std::span<const EphemerisFormat> ephemeris_formats();
 
-/// The satellites of a text in any of the formats. Throws std::runtime_error; for an unknown format it names all.
+/// Reads the satellites of a text in any of the formats. Throws std::runtime_error; for an unknown format it names all.
 [[nodiscard]] EphemerisFile read_ephemerides(std::string_view text, const std::string& file,
                                              const SystemSet& used = kAllSystems);
 
@@ -39,22 +39,22 @@ struct EphemerisFormat {
 struct BroadcastRecord {
   SatelliteId satellite;
   double week = 0.0, toe_s = 0.0;
-  double toc_s = 0.0;    ///< of the same week: below 0 or beyond its end in the weeks beside
+  double toc_s = 0.0;    ///< time in the same week: below 0 or beyond its end in the weeks beside
   double omega0 = 0.0;   ///< at the begin of the week
   Ephemeris elements{};  ///< all but reference time, node and clock
   double af0 = 0.0, af1 = 0.0, af2 = 0.0;
 };
 
-/// Between the reference times of clock and orbit.
+/// Longest time between the reference times of clock and orbit.
 inline constexpr double kLongestClockAge_s = 86400.0;
 
-/// Galileo has two satellites at 0.16 (E14, E18); the flight software refuses more.
+/// Largest eccentricity. Galileo has two satellites at 0.16 (E14, E18); the flight software rejects more.
 inline constexpr double kMaxEccentricity = 0.2;
 
-/// What is wrong with a record; empty if nothing is.
+/// Returns the defect of a record; empty if it has none.
 [[nodiscard]] std::string problem_of(const BroadcastRecord& record);
 
-/// The set with the clock's reference time moved to toe. The record must have no problem.
+/// Returns the set with the clock's reference time moved to toe. The record must have no problem.
 [[nodiscard]] Ephemeris ephemeris_of(const BroadcastRecord& record);
 
 }  // namespace vbar::twins::gnss

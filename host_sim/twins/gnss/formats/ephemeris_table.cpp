@@ -17,7 +17,7 @@ namespace {
 constexpr std::string_view kColumns =
     "satellite,week,toe_s,toc_s,sqrt_a,e,m0,delta_n,omega0,omega_dot,i0,i_dot,omega,cuc,cus,cic,cis,crc,crs,af0,af1,"
     "af2,group_delay_s";
-constexpr std::size_t kNumbers = 22;  // of a satellite's row, after its name
+constexpr std::size_t kNumbers = 22;  // numbers of a satellite's row, after its name
 
 struct Row {
   std::string_view name;

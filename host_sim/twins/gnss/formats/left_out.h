@@ -10,15 +10,17 @@ namespace vbar::twins::gnss {
 
 class LeftOut {
  public:
-  /// A record of another system or message, which every file of several systems holds: "GLONASS", "Galileo F/NAV".
+  /// Adds a record of another system or message, which every file of several systems holds: "GLONASS", "Galileo F/NAV".
   void add(std::string_view kind) { entry(kind).count += 1; }
 
-  /// A set that would be used if it were right. `first`: satellite, line and reason, kept of the first of its kind.
+  /// Adds a set that would be used if it were right. `first`: satellite, line and reason, kept of the first of its
+  /// kind.
   void add_defective(std::string_view kind, const std::string& first);
 
   [[nodiscard]] bool is_empty() const { return entries_.empty(); }
 
-  /// "GLONASS (210), Galileo F/NAV (12), sets of zeros (2; the first: G05 in line 19)".
+  /// Returns the records left out in words: "GLONASS (210), Galileo F/NAV (12), sets of zeros (2; the first: G05 in
+  /// line 19)".
   [[nodiscard]] std::string text() const;
 
  private:

@@ -25,7 +25,7 @@ fsw::GpsTime noon_of(std::vector<Ephemeris>& sets) {
   return {middle / kDay_ns * kDay_ns + kDay_ns / 2};
 }
 
-/// Of each satellite the set whose reference time is nearest to `noon`, the earlier of two as near.
+/// Returns one set of each satellite: that whose reference time is nearest to `noon`, the earlier of two as near.
 std::vector<Ephemeris> nearest_to(fsw::GpsTime noon, const std::vector<Ephemeris>& sets) {
   const auto distance = [&](const Ephemeris& set) { return std::abs((set.toe - noon).ns); };
   std::map<SatelliteId, Ephemeris> nearest;

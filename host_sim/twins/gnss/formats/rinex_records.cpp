@@ -15,7 +15,7 @@ namespace {
 
 using files::TextLines;
 
-constexpr std::size_t kLinesOfOrbit = 7;  // of GPS, Galileo and BeiDou
+constexpr std::size_t kLinesOfOrbit = 7;  // lines of GPS, Galileo and BeiDou
 constexpr std::size_t kWidth = 19;
 constexpr std::string_view kSystemLetters = "GEC";  // in the order of System
 
@@ -32,7 +32,7 @@ constexpr bool is_needed(System system, std::size_t line, std::size_t place) {
   switch (line) {
     case 1:
       return place >= 2;
-    case 5:  // of Galileo also the sources of the data
+    case 5:  // Galileo: also the sources of the data
       return place == 1 || place == 3 || (place == 2 && is_galileo);
     case 6:  // GPS TGD, BeiDou TGD1; Galileo BGD(E1,E5a) and BGD(E1,E5b)
       return place == (is_galileo ? 4 : 3);
@@ -45,7 +45,7 @@ constexpr bool is_needed(System system, std::size_t line, std::size_t place) {
 
 /// Columns of a version.
 struct Layout {
-  std::size_t clock;  ///< of the first number of the first line
+  std::size_t clock;  ///< column of the first number of the first line
   std::size_t orbit;  ///< and of the following ones
 };
 constexpr Layout layout_of(int version) {

@@ -13,14 +13,14 @@ namespace vbar::twins::gnss {
 /// Goes through the records of a file of version 2, 3 or 4 behind its header.
 class RinexRecords {
  public:
-  /// `lines` must outlive it. `used`: the systems whose sets are read.
+  /// Makes a reader. `lines` must outlive it. `used`: the systems whose sets are read.
   RinexRecords(files::TextLines& lines, int version, const SystemSet& used)
       : lines_(lines), version_(version), used_(used) {
     advance();
   }
 
-  /// The next set that can be used; nothing at the end. Corrections of version 4 go to `corrections`.
-  /// Throws files::FormatError.
+  /// Reads the next set that can be used; nothing at the end. Corrections of version 4 go to `corrections`. Throws
+  /// files::FormatError.
   std::optional<BroadcastRecord> next(BroadcastCorrections& corrections);
 
   [[nodiscard]] const LeftOut& left_out() const { return left_out_; }
