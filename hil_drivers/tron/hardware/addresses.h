@@ -1,6 +1,6 @@
 #pragma once
-// Where the devices of a bench are: of an emulated one as it says in addresses.json, of a laboratory as its bench file
-// says.
+// Addresses of the devices of a testbed: an emulator writes them to addresses.json, a real testbed has them in its
+// bench file.
 
 #include <cstdint>
 #include <filesystem>
@@ -26,7 +26,7 @@ struct BenchAddresses {
 [[nodiscard]] BenchAddresses addresses_of(const BenchFile& bench);
 /// Throws std::runtime_error that names the file.
 [[nodiscard]] BenchAddresses read_addresses(const std::filesystem::path& file);
-/// "host:port"; throws std::runtime_error.
+/// Parses "host:port"; throws std::runtime_error.
 [[nodiscard]] TcpAddress parse_address(const std::string& text);
 
 }  // namespace vbar::tron

@@ -53,22 +53,22 @@ class RobotPair {
   /// Ends RSI and closes the lines.
   void close() noexcept;
 
-  /// As the controllers stated in the last cycle.
+  /// Returns the posture as the controllers stated it in the last cycle.
   [[nodiscard]] Posture posture() const;
-  /// As commanded last.
+  /// Returns the posture that was commanded last.
   [[nodiscard]] Posture command() const;
 
   /// Follows the motion and waits until the arms have settled. Throws std::runtime_error if they do not settle.
   MotionEnd follow(const Motion& motion);
   /// Holds the arms for a number of cycles.
   MotionEnd hold(int cycles);
-  /// After kInterrupted: waits until emergency stops are cleared, resets and starts what has stopped. `report` gets a
-  /// sentence for the operator. Throws std::runtime_error after the operator's time-out.
+  /// Recovers after kInterrupted: after kInterrupted: waits until emergency stops are cleared, resets and starts what
+  /// has stopped. `report` gets a sentence for the operator. Throws std::runtime_error after the operator's time-out.
   void recover(const std::function<void(const std::string&)>& report);
-  /// At rest, through Ethernet KRL.
+  /// Returns the posture at rest, through Ethernet KRL.
   [[nodiscard]] Posture rest_posture();
 
-  /// From another thread: calls return kInterrupted or throw without delay, and wait for nothing.
+  /// Cancels from another thread: calls return kInterrupted or throw without delay, and wait for nothing.
   void cancel() noexcept;
 
   [[nodiscard]] double time_s() const;  ///< bench time since open(), 4 ms a cycle

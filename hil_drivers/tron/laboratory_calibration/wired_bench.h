@@ -1,5 +1,5 @@
 #pragma once
-// A bench to calibrate, over its wires.
+// Testbed under calibration, over its wires.
 
 #include <filesystem>
 #include <functional>
