@@ -1,6 +1,6 @@
 #pragma once
-// What the testbed adds to record, summary and report: bench.csv, the object "optical_stimulator" of summary.json, a
-// section.
+// Contribution of the testbed to record, summary and report: bench.csv, the object "optical_stimulator" of
+// summary.json, a section.
 
 #include <filesystem>
 #include <map>
@@ -17,7 +17,7 @@
 
 namespace vbar::optical_stimulator {
 
-/// What is known at the end of a run, beside the rows.
+/// Holds the figures at the end of a run, beside the rows.
 struct RunFigures {
   std::filesystem::path calibration_file;
   const BenchCalibration* calibration = nullptr;
@@ -27,10 +27,10 @@ struct RunFigures {
   std::map<std::string, int> faults;            ///< likewise, that have taken effect
 };
 
-/// Into record.summary.testbeds["optical_stimulator"] and, for the files, its provenance.
+/// Adds the figures to record.summary.testbeds["optical_stimulator"] and, for the files, to its provenance.
 void add_figures(const RunFigures& figures, report::RunRecord& record);
 
-// The extension.
+// Functions of the report's extension.
 [[nodiscard]] std::vector<report::TableKind> tables();
 void summarise(const report::RunRecord& record, report::Summary& summary);
 [[nodiscard]] std::vector<report::Section> sections(const report::RunRecord& record);
