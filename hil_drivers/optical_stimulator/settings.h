@@ -13,11 +13,11 @@
 namespace vbar::optical_stimulator {
 
 struct OpticalStimulatorSettings : mission::TestbedSettings {
-  std::string bench;        ///< command line of the emulated bench; empty: hardware, or a bench that runs already
+  std::string bench;        ///< command line of the emulator; empty: hardware, or a testbed that runs already
   std::string calibration;  ///< path of the calibration's file; {data} and {seed} are replaced
   // Addresses; empty: as addresses.json states.
   std::string camera_address, x_display, output;
-  std::string rails;  ///< a tty, or host:port; empty: as the bench says or, without a bench, none
+  std::string rails;  ///< a tty, or host:port; empty: as the testbed says or, without a testbed, none
   int packet_size = 1400;
   std::optional<int> packet_delay_us;  ///< empty: as the socket's buffer needs
   std::chrono::nanoseconds settle{};   ///< from a picture on the screen to the trigger

@@ -13,7 +13,7 @@
 namespace vbar::tron {
 
 struct TronSettings : mission::TestbedSettings {
-  std::string bench;                                    ///< command line of the emulated bench; empty: hardware
+  std::string bench;                                    ///< command line of the emulator; empty: hardware
   std::string laboratory = "{data}/benches/tron.toml";  ///< path of the bench file; {data} is replaced
   std::string calibration;                              ///< path; {data} and {seed} are replaced
   // Addresses; empty: for an emulator as its addresses.json states, by default as the bench file states.

@@ -70,7 +70,7 @@ class TronRun final : public testbeds::TestbedRun, public std::enable_shared_fro
 
   report::RunRecord* record_ = nullptr;
   std::filesystem::path folder_;
-  std::filesystem::path truth_file_;  ///< that an emulated bench writes
+  std::filesystem::path truth_file_;  ///< that an emulator writes
   mutable std::mutex mutex_;          // guards the rows, which take() adds
   std::vector<TronRow> rows_;
 };

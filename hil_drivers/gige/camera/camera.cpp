@@ -96,7 +96,7 @@ class Camera::Connection {
   }
 
   void configure() {
-    // What an earlier owner left running refuses settings.
+    // A camera that an earlier owner left running rejects settings.
     features().execute("AcquisitionStop");
     set_trigger();
     set_image_functions();

@@ -1,5 +1,5 @@
 #pragma once
-// One exposure of the emulated bench, from what is on the screen to the numbers of the camera: optics, light and
+// One exposure of the emulator, from what is on the screen to the numbers of the camera: optics, light and
 // detector without sockets or processes.
 
 #include <cstdint>

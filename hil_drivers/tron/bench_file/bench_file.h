@@ -1,7 +1,7 @@
 #pragma once
 // The laboratory as designed: two arms, track, mounts, lamp, light boxes, camera, motion capture, addresses and limits
-// (data/benches/tron.toml, where each number has its source). What a bench really is differs from it by the errors that
-// calibration finds.
+// (data/benches/tron.toml, where each number has its source). What a testbed really is differs from it by the errors
+// that calibration finds.
 //
 // Laboratory frame L: x along the track, z up, origin on the floor in a corner of the end wall, y = 0 in the middle.
 // T_A_B (Eigen::Isometry3d) takes coordinates in B to coordinates in A.

@@ -16,11 +16,11 @@ struct TcpAddress {
 };
 
 struct BenchAddresses {
-  bool is_virtual = false;                ///< the clock of an emulated bench
+  bool is_virtual = false;                ///< the clock of an emulator
   std::string camera;                     ///< IP address
   TcpAddress camera_robot, target_robot;  ///< Ethernet KRL
   TcpAddress lights;                      ///< sACN, UDP
-  std::filesystem::path control;          ///< socket of an emulated bench; empty: none
+  std::filesystem::path control;          ///< socket of an emulator; empty: none
 };
 
 [[nodiscard]] BenchAddresses addresses_of(const BenchFile& bench);

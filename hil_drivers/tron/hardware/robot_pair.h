@@ -1,6 +1,6 @@
 #pragma once
 // Both robots, driven cycle by cycle through RSI, their states through Ethernet KRL. There is no wall clock in the
-// control path: a cycle lasts from the answers to the next states. With the virtual clock of an emulated bench time
+// control path: a cycle lasts from the answers to the next states. With the virtual clock of an emulator time
 // stands still between the calls; with a real one a thread holds the arms where they are.
 
 #include <chrono>
@@ -20,7 +20,7 @@ struct RobotPairSettings {
   rsi::ClientSettings camera_rsi, target_rsi;
   eki::ClientSettings camera_eki, target_eki;  ///< host and port may be set later, before open()
   double track_home_m = 0.0;
-  bool is_virtual = true;                           ///< the clock of the bench
+  bool is_virtual = true;                           ///< the clock of the testbed
   std::chrono::milliseconds start_patience{5000};   ///< wall clock, for the first state after RSI was started
   std::chrono::milliseconds silence_patience{500};  ///< silence in a cycle; virtual clock: 20 times as much
   double settle_limit_s = 5.0;                      ///< bench time

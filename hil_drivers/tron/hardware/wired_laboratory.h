@@ -1,5 +1,5 @@
 #pragma once
-// All devices of a bench over their wires.
+// All devices of a testbed over their wires.
 
 #include <chrono>
 #include <functional>

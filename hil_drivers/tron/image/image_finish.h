@@ -1,5 +1,5 @@
 #pragma once
-// From a frame of the bench to the image that a camera in orbit would deliver, and what its light says of the lamps.
+// From a frame of the testbed to the image that a camera in orbit would deliver, and what its light says of the lamps.
 
 #include <cstdint>
 #include <optional>

@@ -1,5 +1,5 @@
 #pragma once
-// Both arms, the track and the mounts of a bench, as designed.
+// Both arms, the track and the mounts of a testbed, as designed.
 
 #include <optional>
 

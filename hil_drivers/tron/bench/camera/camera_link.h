@@ -25,9 +25,9 @@ namespace vbar::tron::bench {
 
 /// Holds the steps of an exposure.
 struct ExposureSteps {
-  std::function<LabView(const gige::Request& request)> look;              ///< on the bench's thread
+  std::function<LabView(const gige::Request& request)> look;              ///< on the emulator's thread
   std::function<std::vector<std::uint16_t>(const LabView& view)> render;  ///< on the camera's
-  std::function<void()> done;                                             ///< on the bench's thread
+  std::function<void()> done;                                             ///< on the emulator's thread
 };
 
 class CameraLink {

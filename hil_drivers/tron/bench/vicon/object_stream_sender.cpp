@@ -46,7 +46,7 @@ struct ObjectStreamSender::State {
     if (error) throw std::runtime_error(fmt::format("motion capture to {}: {}", settings.address, error.message()));
     computer = {address, settings.vicon.port};
     (void)vicon::encode_frame({0, {{settings.vicon.camera_object}, {settings.vicon.target_object}}},
-                              settings.block_bytes);  // refuses names and sizes
+                              settings.block_bytes);  // rejects names and sizes
   }
 
   std::optional<vicon::TrackedObject> stated(Object& object) const {

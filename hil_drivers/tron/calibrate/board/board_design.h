@@ -50,8 +50,8 @@ struct BoardQuad {
 /// Returns T_F_B as designed: at the stand-off of the mock-up's face.
 [[nodiscard]] Eigen::Isometry3d T_flange_board(const BenchFile& bench);
 
-/// Returns T_T_B, which is exact, since the board is held by the same mount as the mock-up. With the bench's true mount
-/// X_T the board is at T_flange_T T_T_B.
+/// Returns T_T_B, which is exact, since the board is held by the same mount as the mock-up. With the testbed's true
+/// mount X_T the board is at T_flange_T T_T_B.
 [[nodiscard]] Eigen::Isometry3d T_target_board(const BenchFile& bench);
 
 }  // namespace vbar::tron::calibrate

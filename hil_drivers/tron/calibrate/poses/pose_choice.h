@@ -1,5 +1,5 @@
 #pragma once
-// Postures at which the camera sees the board, as different from each other as the bench permits.
+// Postures at which the camera sees the board, as different from each other as the testbed permits.
 
 #include <cstdint>
 #include <functional>
@@ -26,7 +26,7 @@ struct PoseGoals {
 using PostureFilter = std::function<bool(const Posture&)>;
 
 /// Chooses `count` postures by the chain as designed; ranges and carriage places are spread evenly, all else is random.
-/// Sorted along the track, so that moves are short. Throws std::runtime_error if the bench has too few such postures.
+/// Sorted along the track, so that moves are short. Throws std::runtime_error if the testbed has too few such postures.
 [[nodiscard]] std::vector<Posture> choose_postures(const BenchFile& bench, const LensCalibration& lens,
                                                    const BoardDesign& board, int count, std::uint64_t seed,
                                                    const PoseGoals& goals = {}, const PostureFilter& filter = {});

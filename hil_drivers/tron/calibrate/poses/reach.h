@@ -1,5 +1,5 @@
 #pragma once
-// Joints for poses of camera and board in the laboratory, by the bench as designed.
+// Joints for poses of camera and board in the laboratory, by the testbed as designed.
 
 #include <optional>
 

@@ -1,7 +1,7 @@
 #pragma once
 // Codec of RSI documents. Encoding is strict: values in the order of the configuration, IPOC last, no blank before
 // "/>", four decimals. Decoding accepts any order, both forms of an empty element, Type and TYPE, additional flat
-// elements and any decimal notation; it refuses document types, entities, nested or repeated elements, numbers that are
+// elements and any decimal notation; it rejects document types, entities, nested or repeated elements, numbers that are
 // not finite, and oversize.
 
 #include <memory>
