@@ -24,7 +24,7 @@ struct RunFigures {
   std::optional<SelfCheckFigures> self_check;
   CameraIdentity devices;
   std::vector<report::FileDigest> bench_files;  ///< program and files of an emulator
-  std::map<std::string, int> faults;            ///< likewise, that have taken effect
+  std::map<std::string, int> faults;            ///< faults that the emulator has set and that have taken effect
 };
 
 /// Adds the figures to record.summary.testbeds["optical_stimulator"] and, for the files, to its provenance.

@@ -22,7 +22,7 @@ struct RunFigures {
   std::map<std::string, double> devices;
   std::map<std::string, double> calibration;    ///< its figures
   std::vector<report::FileDigest> bench_files;  ///< program and files of an emulator
-  std::map<std::string, int> faults;            ///< likewise, that have taken effect
+  std::map<std::string, int> faults;            ///< faults that the emulator has set and that have taken effect
 };
 
 /// Adds the figures to record.summary.testbeds["tron"] and, for the files, to its provenance.

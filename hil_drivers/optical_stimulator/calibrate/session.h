@@ -23,7 +23,7 @@ struct ProcedureSettings {
   twins::camera::CameraSettings camera;  ///< the camera's file: optics, region and exposure of the flight's images
   double lens_mm = 25.0;                 ///< position of the axis of lens 2
   double display_mm = 14.29;             ///< position of the axis of the display where the search for the focus begins
-  double focus_range_mm = 0.5;           ///< on both sides of it
+  double focus_range_mm = 0.5;           ///< range on both sides of the focus
   GridSize geometry_grid{40, 25}, held_out_grid{27, 17}, uniformity_grid{16, 10};
   int focus_steps = 11, fine_focus_steps = 9;
   int grey_levels = 8;

@@ -27,7 +27,7 @@ struct SelfCheckFigures {
   DayCorrection correction;
   double brightness = 0.0;  ///< brightness of the grey frame, relative to the calibration
   double noise = 0.0;       ///< noise of black frames, relative to the calibration
-  double offset = 0.0;      ///< likewise
+  double offset = 0.0;      ///< offset of black frames, relative to the calibration
   int new_hot_pixels = 0;   ///< in the region of the image
 };
 

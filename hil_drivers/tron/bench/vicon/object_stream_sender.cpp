@@ -71,7 +71,7 @@ struct ObjectStreamSender::State {
     for (Object& object : objects)
       if (auto tracked = stated(object)) frame.objects.push_back(*std::move(tracked));
     for (const vicon::Bytes& block : vicon::encode_frame(frame, settings.block_bytes)) {
-      error_code ignored;  // nobody listens: as a real one
+      error_code ignored;  // no listener: as a real one
       socket.send_to(asio::buffer(block), computer, 0, ignored);
     }
     ++sent;
