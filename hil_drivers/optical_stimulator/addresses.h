@@ -1,5 +1,5 @@
 #pragma once
-// Where a bench listens: addresses.json of the emulated one.
+// Addresses of a testbed's devices: addresses.json of an emulator.
 
 #include <filesystem>
 #include <string>

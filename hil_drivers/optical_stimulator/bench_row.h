@@ -1,5 +1,5 @@
 #pragma once
-// An image of the testbed (bench.csv).
+// Row of bench.csv: one image of the testbed.
 
 #include <cstdint>
 #include <optional>
@@ -16,7 +16,7 @@ struct BenchRow {
   std::int64_t tries = 1;  ///< images taken for it
   std::int64_t stale = 0;  ///< tries that showed another picture
   std::int64_t packets_resent = 0, reconnects = 0;
-  // Wall clock.
+  // Wall-clock times.
   double render_s = 0.0;          ///< scene to expected electrons to counts
   double show_s = 0.0;            ///< until the picture is on the screen, and its settling
   double receive_s = 0.0;         ///< from the trigger until the image is whole: exposure, readout, transfer

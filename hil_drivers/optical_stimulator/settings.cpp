@@ -14,7 +14,7 @@ std::chrono::nanoseconds milliseconds(const TableReader& section, std::string_vi
   return std::chrono::nanoseconds(std::llround(1e6 * section.number(key, from_to(0.0, high), otherwise)));
 }
 
-/// Without a bench that names it, the address of a device is required.
+/// Without a testbed that names it, the address of a device is required.
 std::string address(const TableReader& section, std::string_view key, bool is_required) {
   const std::string value = section.text(key, "");
   if (is_required && value.empty()) section.refuse(key, "nothing", "an address, as no bench names one");

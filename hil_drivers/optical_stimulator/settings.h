@@ -1,5 +1,5 @@
 #pragma once
-// [testbed.optical_stimulator]: display, camera and rails of a mission's optical testbed.
+// Section [testbed.optical_stimulator] of a mission: display, camera and rails.
 
 #include <chrono>
 #include <filesystem>
@@ -13,11 +13,11 @@
 namespace vbar::optical_stimulator {
 
 struct OpticalStimulatorSettings : mission::TestbedSettings {
-  std::string bench;        ///< command line of the emulated bench; empty: hardware, or a bench that runs already
+  std::string bench;        ///< command line of the emulator; empty: hardware, or a testbed that runs already
   std::string calibration;  ///< path of the calibration's file; {data} and {seed} are replaced
-  // Empty: as the bench says.
+  // Addresses; empty: as addresses.json states.
   std::string camera_address, x_display, output;
-  std::string rails;  ///< a tty, or host:port; empty: as the bench says or, without a bench, none
+  std::string rails;  ///< a tty, or host:port; empty: as the testbed says or, without a testbed, none
   int packet_size = 1400;
   std::optional<int> packet_delay_us;  ///< empty: as the socket's buffer needs
   std::chrono::nanoseconds settle{};   ///< from a picture on the screen to the trigger
@@ -30,7 +30,7 @@ struct OpticalStimulatorSettings : mission::TestbedSettings {
 /// Throws MissionError.
 std::shared_ptr<const mission::TestbedSettings> read_optical_stimulator(const mission::TableReader& section);
 
-/// The file of the calibration.
+/// Returns the file of the calibration.
 [[nodiscard]] std::filesystem::path calibration_file(const OpticalStimulatorSettings& settings,
                                                      const std::filesystem::path& data_directory, std::uint64_t seed);
 

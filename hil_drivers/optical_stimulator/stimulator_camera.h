@@ -1,5 +1,5 @@
 #pragma once
-// The camera of the testbed as the taker of a sensor's images.
+// Camera of the testbed as the image taker of a sensor.
 
 #include <memory>
 #include <utility>

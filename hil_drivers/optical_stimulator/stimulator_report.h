@@ -1,6 +1,6 @@
 #pragma once
-// What the testbed adds to record, summary and report: bench.csv, the object "optical_stimulator" of summary.json, a
-// section.
+// Contribution of the testbed to record, summary and report: bench.csv, the object "optical_stimulator" of
+// summary.json, a section.
 
 #include <filesystem>
 #include <map>
@@ -17,20 +17,20 @@
 
 namespace vbar::optical_stimulator {
 
-/// What is known at the end of a run, beside the rows.
+/// Holds the figures at the end of a run, beside the rows.
 struct RunFigures {
   std::filesystem::path calibration_file;
   const BenchCalibration* calibration = nullptr;
   std::optional<SelfCheckFigures> self_check;
   CameraIdentity devices;
   std::vector<report::FileDigest> bench_files;  ///< program and files of an emulator
-  std::map<std::string, int> faults;            ///< likewise, that have taken effect
+  std::map<std::string, int> faults;            ///< faults that the emulator has set and that have taken effect
 };
 
-/// Into record.summary.testbeds["optical_stimulator"] and, for the files, its provenance.
+/// Adds the figures to record.summary.testbeds["optical_stimulator"] and, for the files, to its provenance.
 void add_figures(const RunFigures& figures, report::RunRecord& record);
 
-// The extension.
+// Functions of the report's extension.
 [[nodiscard]] std::vector<report::TableKind> tables();
 void summarise(const report::RunRecord& record, report::Summary& summary);
 [[nodiscard]] std::vector<report::Section> sections(const report::RunRecord& record);

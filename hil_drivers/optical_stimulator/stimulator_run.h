@@ -1,5 +1,5 @@
 #pragma once
-// The Optical Stimulator during one run: calibration, bench process, display, camera, and the images taken.
+// Optical Stimulator during one run: calibration, emulator process, display, camera, and the images taken.
 
 #include <filesystem>
 #include <memory>
@@ -26,15 +26,16 @@ class StimulatorRun final : public testbeds::TestbedRun, public std::enable_shar
   StimulatorRun(const OpticalStimulatorSettings& settings, const testbeds::RunContext& context);
   ~StimulatorRun() override;
 
-  /// One camera. Throws std::runtime_error for a second one, and for a calibration that is not of this camera.
+  /// Makes the only camera. Throws std::runtime_error for a second one, and for a calibration that is not of this
+  /// camera.
   [[nodiscard]] std::unique_ptr<twins::camera::ImageTaker> make_camera(const testbeds::CameraPlan& plan) override;
   void begin(report::RunRecord& record, const std::filesystem::path& folder) override;
   void finish() noexcept override;
 
   // For the image taker.
-  /// Starts the bench, opens its devices and checks it. Throws std::runtime_error, one sentence.
+  /// Starts the testbed, opens its devices and checks it. Throws std::runtime_error, one sentence.
   void start();
-  /// From another thread than take(), which then returns.
+  /// Stops from another thread than take(), which then returns.
   void stop() noexcept;
   twins::camera::TakenImage take(const twins::camera::Exposure& exposure);
   [[nodiscard]] std::vector<twins::Note> statistics() const;

@@ -1,5 +1,5 @@
 #pragma once
-// The section [testbed.tron] of a mission.
+// Section [testbed.tron] of a mission.
 
 #include <chrono>
 #include <cstdint>
@@ -13,10 +13,10 @@
 namespace vbar::tron {
 
 struct TronSettings : mission::TestbedSettings {
-  std::string bench;                                    ///< command line of the emulated bench; empty: hardware
+  std::string bench;                                    ///< command line of the emulator; empty: hardware
   std::string laboratory = "{data}/benches/tron.toml";  ///< path of the bench file; {data} is replaced
   std::string calibration;                              ///< path; {data} and {seed} are replaced
-  // Addresses; empty: of an emulated bench as it says, otherwise as the bench file says.
+  // Addresses; empty: for an emulator as its addresses.json states, by default as the bench file states.
   std::string camera_address, camera_robot_address, target_robot_address, lights_address;
   int trials = 400;             ///< placements tried for an image
   int max_hidden = 3;           ///< largest number of keypoints and centre hidden, in an image that is taken
@@ -32,11 +32,11 @@ struct TronSettings : mission::TestbedSettings {
 /// Throws MissionError.
 std::shared_ptr<const mission::TestbedSettings> read_tron(const mission::TableReader& section);
 
-/// The file of the calibration. Throws MissionError if there is none.
+/// Returns the file of the calibration. Throws MissionError if there is none.
 [[nodiscard]] std::filesystem::path calibration_file(const TronSettings& settings,
                                                      const std::filesystem::path& data_directory, std::uint64_t seed);
 
-/// `path` with {data} and {seed} replaced.
+/// Returns `path` with {data} and {seed} replaced.
 [[nodiscard]] std::filesystem::path replaced(std::string path, const std::filesystem::path& data_directory,
                                              std::uint64_t seed);
 

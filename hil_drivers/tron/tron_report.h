@@ -1,5 +1,5 @@
 #pragma once
-// What the testbed adds to record, summary and report: tron.csv, the object "tron" of summary.json, a section.
+// Contribution of the testbed to record, summary and report: tron.csv, the object "tron" of summary.json, a section.
 
 #include <filesystem>
 #include <map>
@@ -12,7 +12,7 @@
 
 namespace vbar::tron {
 
-/// What is known at the end of a run, beside the rows.
+/// Holds the figures at the end of a run, beside the rows.
 struct RunFigures {
   bool is_emulated = false;
   std::string clock;                         ///< clock of the testbed: "virtual", "real"
@@ -22,13 +22,13 @@ struct RunFigures {
   std::map<std::string, double> devices;
   std::map<std::string, double> calibration;    ///< its figures
   std::vector<report::FileDigest> bench_files;  ///< program and files of an emulator
-  std::map<std::string, int> faults;            ///< likewise, that have taken effect
+  std::map<std::string, int> faults;            ///< faults that the emulator has set and that have taken effect
 };
 
-/// Into record.summary.testbeds["tron"] and, for the files, its provenance.
+/// Adds the figures to record.summary.testbeds["tron"] and, for the files, to its provenance.
 void add_figures(const RunFigures& figures, report::RunRecord& record);
 
-// The extension.
+// Functions of the report's extension.
 [[nodiscard]] std::vector<report::TableKind> tables();
 void summarise(const report::RunRecord& record, report::Summary& summary);
 [[nodiscard]] std::vector<report::Section> sections(const report::RunRecord& record);

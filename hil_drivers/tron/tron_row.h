@@ -1,5 +1,5 @@
 #pragma once
-// An image of the testbed (tron.csv).
+// Row of tron.csv: one image of the testbed.
 
 #include <cstdint>
 #include <optional>
@@ -18,7 +18,7 @@ struct TronRow {
   std::int64_t shaded = 0;  ///< lit points of the target's hull, four a face, in the shadow of an arm
   std::int64_t moves = 0;
   double bench_s = 0.0, move_s = 0.0;  ///< bench time: of the image, of its moves
-  // Measured pose less the commanded one, laboratory lengths; of the first move, and after the correction.
+  // Measured pose less the commanded one, laboratory lengths: after the first move, and after the correction.
   std::optional<double> first_error_mm, first_error_deg, pose_error_mm, pose_error_deg;
   std::optional<double> disagreement;  ///< chi-square between arms and motion capture, six degrees of freedom
   std::optional<double> lamp_azimuth_deg, sun_error_deg;

@@ -37,7 +37,7 @@ twins::camera::Region single_pixels(const twins::camera::Region& region) {
   return {kBinning * region.x, kBinning * region.y, kBinning * region.width, kBinning * region.height};
 }
 
-/// The same pose at full scale.
+/// Returns the same pose at full scale.
 Eigen::Isometry3d in_orbit(const Eigen::Isometry3d& T_C_T, double scale) {
   Eigen::Isometry3d T = T_C_T;
   T.translation() /= scale;

@@ -1,5 +1,5 @@
 #pragma once
-// TRON during one run: calibration, bench process, devices, planning, and the images taken.
+// TRON during one run: calibration, emulator process, devices, planning, and the images taken.
 
 #include <filesystem>
 #include <map>
@@ -22,7 +22,7 @@
 
 namespace vbar::tron {
 
-/// The camera of the mission with the lens as calibrated, for the pixels of the mission, which are binned.
+/// Returns the camera of the mission with the lens as calibrated, for the pixels of the mission, which are binned.
 [[nodiscard]] twins::camera::CameraSettings calibrated_camera(const Calibration& calibration,
                                                               const twins::camera::CameraSettings& of_mission);
 
@@ -31,15 +31,16 @@ class TronRun final : public testbeds::TestbedRun, public std::enable_shared_fro
   TronRun(const TronSettings& settings, const testbeds::RunContext& context);
   ~TronRun() override;
 
-  /// One camera. Throws std::runtime_error for a second one, and for a calibration that is not of this bench.
+  /// Makes the only camera. Throws std::runtime_error for a second one, and for a calibration that is not of this
+  /// testbed.
   [[nodiscard]] std::unique_ptr<twins::camera::ImageTaker> make_camera(const testbeds::CameraPlan& plan) override;
   void begin(report::RunRecord& record, const std::filesystem::path& folder) override;
   void finish() noexcept override;
 
   // For the image taker.
-  /// Starts the bench and opens its devices. Throws std::runtime_error, one sentence.
+  /// Starts the testbed and opens its devices. Throws std::runtime_error, one sentence.
   void start();
-  /// From another thread than take(), which then returns or throws.
+  /// Stops from another thread than take(), which then returns or throws.
   void stop() noexcept;
   twins::camera::TakenImage take(const twins::camera::Exposure& exposure);
   [[nodiscard]] std::vector<twins::Note> statistics() const;
@@ -69,7 +70,7 @@ class TronRun final : public testbeds::TestbedRun, public std::enable_shared_fro
 
   report::RunRecord* record_ = nullptr;
   std::filesystem::path folder_;
-  std::filesystem::path truth_file_;  ///< that an emulated bench writes
+  std::filesystem::path truth_file_;  ///< that an emulator writes
   mutable std::mutex mutex_;          // guards the rows, which take() adds
   std::vector<TronRow> rows_;
 };

@@ -36,23 +36,23 @@ class GlibError {
   GError* error_ = nullptr;
 };
 
-/// A feature that a camera refuses, or that reads back other than it was set: one sentence without the address.
+/// Reports a feature that a camera rejects, or that reads back other than it was set: one sentence without the address.
 class FeatureError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The alternatives of a name, the standard's and vendors'.
+/// Lists the alternatives of a name, the standard's and vendors'.
 using Names = std::initializer_list<const char*>;
 
-/// What a setting is to a camera that does not have it.
+/// States what a setting means for a camera that does not have it.
 enum class Need { kRequired, kIfAvailable };
 
 class Features {
  public:
   explicit Features(ArvDevice* device) : device_(device) {}
 
-  // Each throws FeatureError.
+  // Set a feature; each throws FeatureError.
   void set_text(Names names, const char* value, Need need) const;
   void set_flag(Names names, bool value, Need need) const;
   void set_integer(Names names, gint64 value, Need need) const;
@@ -61,11 +61,11 @@ class Features {
   void execute(const char* name) const;
   [[nodiscard]] gint64 integer(const char* name) const;
   [[nodiscard]] std::string text(const char* name) const;
-  /// Empty if the camera lacks it.
+  /// Returns nothing if the camera lacks the feature.
   [[nodiscard]] std::optional<gint64> integer_if_available(const char* name) const;
 
  private:
-  /// The first that is available; null if none is and none is needed.
+  /// Returns the first name that is available; null if none is and none is needed.
   [[nodiscard]] const char* find(Names names, Need need) const;
 
   ArvDevice* device_;

@@ -70,7 +70,7 @@ class Camera::Connection {
       release(device_, stream_, is_started_);
       return;
     }
-    // Aravis asks a silent camera for ten seconds to release it; nobody waits for that.
+    // Aravis asks a silent camera for ten seconds to release it; the driver does not wait for that.
     std::thread([device = std::move(device_), stream = std::move(stream_), started = is_started_]() mutable {
       release(device, stream, started);
     }).detach();
@@ -96,7 +96,7 @@ class Camera::Connection {
   }
 
   void configure() {
-    // What an earlier owner left running refuses settings.
+    // A camera that an earlier owner left running rejects settings.
     features().execute("AcquisitionStop");
     set_trigger();
     set_image_functions();

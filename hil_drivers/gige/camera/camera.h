@@ -1,5 +1,5 @@
 #pragma once
-// A GigE Vision camera by its IP address (Aravis 0.8): settings set and read back, software trigger, whole images only.
+// GigE Vision camera by its IP address (Aravis 0.8): settings set and read back, software trigger, whole images only.
 // Nothing is broadcast and no camera is searched for.
 
 #include <cstdint>
@@ -16,13 +16,13 @@
 
 namespace vbar::gige {
 
-/// One sentence that begins with the camera's address.
+/// Reports one sentence that begins with the camera's address.
 class CameraError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A whole image.
+/// Holds a whole image.
 struct Frame {
   int width = 0, height = 0;
   std::vector<std::uint16_t> dn;  ///< right-aligned, rows of width
@@ -32,7 +32,7 @@ struct Frame {
   std::uint64_t timestamp_ns = 0;  ///< clock of the camera; 0: it states none
 };
 
-/// Why there is no image; to be tried again or not, as the caller decides.
+/// States why there is no image; the caller decides whether to try again.
 struct NoFrame {
   enum class Reason {
     kTimeout,     ///< the trigger was acknowledged and no image came
@@ -63,14 +63,14 @@ class Camera {
     int converter_bits = 12;                ///< expected; the data decide
     int packet_size = 1400;                 ///< with the headers of IP, UDP and GVSP
     std::optional<double> packet_delay_us;  ///< empty: what the socket's buffer stands
-    /// Requested of the kernel; empty: what holds an image.
+    /// Size that is requested of the kernel; empty: what holds an image.
     std::optional<std::size_t> socket_buffer_bytes;
     double timeout_s = 1.0;  ///< for an image, beyond exposure and transfer
   };
 
   struct Identity {
     std::string vendor, model, version, manufacturer_info, serial;
-    /// The camera names itself an emulation.
+    /// Returns true if the camera names itself an emulation.
     [[nodiscard]] bool is_emulated() const;
   };
 
@@ -91,13 +91,14 @@ class Camera {
   void reconnect();
   /// Releases the camera; without effect if it is not open.
   void close() noexcept;
-  /// From any thread, also from a signal handler: take() returns kStopped within 50 ms of its wait, now and ever after.
+  /// Stops from any thread, also from a signal handler: take() returns kStopped within 50 ms of its wait, now and ever
+  /// after.
   void stop() noexcept;
 
   [[nodiscard]] bool is_open() const;
   [[nodiscard]] const Identity& identity() const;
   [[nodiscard]] const Settings& settings() const;
-  /// How the images travel, one sentence.
+  /// Returns how the images travel, one sentence.
   [[nodiscard]] std::string transport() const;
 
  private:

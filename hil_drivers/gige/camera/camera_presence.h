@@ -1,13 +1,13 @@
 #pragma once
-// Whether a camera answers at all, found out faster than by the repeated commands of Aravis (2.5 s each).
+// Check that a camera answers at all, faster than by the repeated commands of Aravis (2.5 s each).
 
 #include <chrono>
 #include <string>
 
 namespace vbar::gige {
 
-/// The address of this computer that routes to `address` (IPv4); nothing is sent. Throws std::invalid_argument for a
-/// text that is not an address, std::runtime_error without a route.
+/// Returns the address of this computer that routes to `address` (IPv4); nothing is sent. Throws std::invalid_argument
+/// for a text that is not an address, std::runtime_error without a route.
 [[nodiscard]] std::string routing_address(const std::string& address);
 
 /// Asks for a register (GVCP, to this address only), `tries` times with `wait` for an acknowledge, whatever its status.

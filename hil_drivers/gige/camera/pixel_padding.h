@@ -1,5 +1,5 @@
 #pragma once
-// Where the numbers of a converter stand in 16-bit pixels. Cameras put them left-aligned (12 bits: FFF0h), and how many
+// Place of a converter's numbers in 16-bit pixels. Cameras put them left-aligned (12 bits: FFF0h), and the number of
 // bits the converter has depends on the camera's mode: the padding is found in the data.
 
 #include <bitset>
@@ -10,7 +10,7 @@ namespace vbar::gige {
 
 class PixelPadding {
  public:
-  /// Until the data decide, pixels are taken for those of a converter of `expected_bits`, left-aligned.
+  /// Starts with a converter of `expected_bits`, left-aligned, until the data decide.
   explicit PixelPadding(int expected_bits);
 
   /// Takes the raw pixels of an image into account.
@@ -18,13 +18,13 @@ class PixelPadding {
 
   /// Returns the number of bits of the converter.
   [[nodiscard]] int bits() const;
-  /// Right-aligned number = pixel >> shift().
+  /// Returns the shift: right-aligned number = pixel >> shift().
   [[nodiscard]] int shift() const;
-  /// False while the pixels seen have too few values to exclude an accident.
+  /// Returns false while the pixels seen have too few values to exclude an accident.
   [[nodiscard]] bool is_decided() const { return values_ >= kDecidingValues; }
 
  private:
-  // That so many different numbers are multiples of four by accident has a probability of 4^-16.
+  // Number of different values. That all of them are multiples of four by accident has a probability of 4^-16.
   static constexpr std::size_t kDecidingValues = 16;
 
   int expected_bits_;

@@ -1,5 +1,5 @@
 #pragma once
-// Trigger, exposure and readout of the emulated camera. What the detector sees comes from a callback.
+// Trigger, exposure and readout of the emulated camera. A callback gives what the detector sees.
 
 #include <cstdint>
 #include <functional>
@@ -15,7 +15,7 @@
 
 namespace vbar::gige {
 
-/// One exposure.
+/// Requests one exposure.
 struct Request {
   twins::camera::Region region;
   double exposure_s = 0.0;
@@ -24,12 +24,12 @@ struct Request {
   std::int64_t number = 0;      ///< exposures before this one
 };
 
-/// Rows of region.width, right-aligned numbers of the converter.
+/// Holds rows of region.width, right-aligned numbers of the converter.
 struct Image {
   std::vector<std::uint16_t> dn;
 };
 
-/// Called when an exposure begins, on the thread of the io_context. Throws nothing.
+/// Exposes; called when an exposure begins, on the thread of the io_context. Throws nothing.
 using Expose = std::function<Image(const Request& request)>;
 
 enum class Pace {
@@ -52,15 +52,15 @@ class Acquisition {
 
   void start();
   void stop();
-  /// During an exposure without effect, as with cameras of Point Grey.
+  /// Triggers; without effect during an exposure, as with cameras of Point Grey.
   void trigger();
 
   void set_exposure_factor(double factor) { exposure_factor_ = factor; }
-  /// The next `count` triggers are acknowledged and have no effect.
+  /// Ignores the next `count` triggers: they are acknowledged and have no effect.
   void ignore_triggers(int count) { ignored_triggers_ = count; }
-  /// The next `count` frames are exposed and not sent.
+  /// Loses the next `count` frames: they are exposed and not sent.
   void lose_frames(int count) { lost_frames_ = count; }
-  /// In the place of the next `count` frames the one before is sent, with its time stamp.
+  /// Repeats frames: in the place of the next `count` frames the one before is sent, with its time stamp.
   void repeat_frames(int count) { repeated_frames_ = count; }
   void set_payload_type(wire::PayloadType type) { payload_type_ = type; }
 
@@ -76,9 +76,9 @@ class Acquisition {
   void expose();
   void end_exposure(Frame frame);
   void read_out(std::shared_ptr<const Frame> frame);
-  /// Without the faults of frames.
+  /// Sends without the faults of frames.
   void send(const Frame& frame);
-  /// Calls `next` after `delay_s` at real pace, otherwise at the next turn of the context; not after stop().
+  /// Calls `next` after `delay_s` at real pace, at fast pace at the next turn of the context; not after stop().
   void after(double delay_s, std::function<void()> next);
   void run_freely();
 

@@ -1,11 +1,11 @@
 #pragma once
-// What the emulated camera states of itself.
+// Identity that the emulated camera states.
 
 #include <string>
 
 namespace vbar::gige {
 
-/// Defaults are those of the Optical Stimulator's camera.
+/// Describes the camera; defaults are those of the Optical Stimulator's camera.
 struct Description {
   std::string manufacturer = "Point Grey Research";
   std::string model = "Grasshopper3 GS3-PGE-23S6M";

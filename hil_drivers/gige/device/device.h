@@ -46,18 +46,19 @@ class Device {
   // Faults, from now on.
   void set_packet_faults(const PacketFaults& faults);
   void set_answer_delay(std::chrono::milliseconds delay);
-  /// Neither hears nor speaks, as with its cable pulled.
+  /// Sets the camera away: it neither hears nor speaks, as with its cable pulled.
   void set_away(bool away);
-  /// Owned by another program.
+  /// Sets the camera to be owned by another program.
   void set_busy(bool busy);
   void damage_xml(bool damaged);
   void set_exposure_factor(double factor);
   void refuse_region(bool refused);
   void ignore_triggers(int count);
-  /// The next frames are exposed and not sent; the one before is sent in their place, with its time stamp.
+  /// Loses the next frames: they are exposed and not sent, or the one before is sent in their place, with its time
+  /// stamp.
   void lose_frames(int count);
   void repeat_frames(int count);
-  /// What blocks call themselves; pixels do not change.
+  /// Sets the type that blocks state; pixels do not change.
   void set_payload_type(wire::PayloadType type);
 
   [[nodiscard]] Statistics statistics() const;

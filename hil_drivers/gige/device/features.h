@@ -1,5 +1,5 @@
 #pragma once
-// The features of the emulated camera, once: from this table come registers, limits and the GenICam description.
+// Features of the emulated camera, listed once: from this table come registers, limits and the GenICam description.
 
 #include <cstdint>
 #include <string_view>
@@ -10,7 +10,7 @@
 
 namespace vbar::gige {
 
-/// In the order of the table.
+/// Names the features in the order of the table.
 enum class FeatureId : std::size_t {
   kSensorWidth,
   kSensorHeight,
@@ -54,7 +54,7 @@ struct Feature {
   FeatureKind kind;
   FeatureAccess access;
   double initial = 0.0;
-  // Integers and floats.
+  // Range of integers and floats.
   double min = 0.0, max = 0.0, increment = 1.0;
   std::string_view max_feature = "";  ///< has the limit in the place of `max`
   std::string_view unit = "";
@@ -62,7 +62,7 @@ struct Feature {
   bool locked_in_acquisition = false;
 
   [[nodiscard]] std::uint32_t address() const { return 0x10000U + 8U * static_cast<std::uint32_t>(id); }
-  /// A float is IEEE 754 double.
+  /// Returns the size of the register; a float is IEEE 754 double.
   [[nodiscard]] std::uint32_t size() const { return kind == FeatureKind::kFloat ? 8 : 4; }
 };
 

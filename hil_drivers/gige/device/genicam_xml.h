@@ -1,5 +1,5 @@
 #pragma once
-// The GenICam description (GenApi 1.1 schema) of the emulated camera.
+// GenICam description (GenApi 1.1 schema) of the emulated camera.
 
 #include <string>
 #include <vector>

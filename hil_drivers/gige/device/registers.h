@@ -1,6 +1,6 @@
 #pragma once
-// The register memory of the emulated camera: bootstrap registers, features and the GenICam description. Writes from
-// the network are checked here; what they cause is the device's.
+// Register memory of the emulated camera: bootstrap registers, features and the GenICam description. Writes from
+// the network are checked here; their effects are the device's.
 
 #include <cstdint>
 #include <optional>
@@ -18,7 +18,7 @@ class Registers {
   /// range. `ip_address` as a number.
   Registers(const Description& description, std::uint32_t ip_address);
 
-  // By address, from the network.
+  // Access by address, from the network.
   struct Read {
     wire::Status status = wire::Status::kSuccess;
     wire::Bytes bytes;
@@ -30,7 +30,7 @@ class Registers {
   };
   Written write(std::uint32_t address, wire::ByteSpan bytes);
 
-  // By the device.
+  // Access by the device.
   [[nodiscard]] std::uint32_t word(std::uint32_t address) const;
   void set_word(std::uint32_t address, std::uint32_t value);
   [[nodiscard]] double value(FeatureId id) const;

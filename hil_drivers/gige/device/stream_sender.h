@@ -1,5 +1,5 @@
 #pragma once
-// The stream channel of the emulated camera: blocks out as paced packets, and packets of the last blocks again on
+// Stream channel of the emulated camera: sends blocks as paced packets, and packets of the last blocks again on
 // request.
 
 #include <array>
@@ -18,7 +18,7 @@
 
 namespace vbar::gige {
 
-/// Probabilities, of each packet that leaves.
+/// Holds probabilities, of each packet that leaves.
 struct PacketFaults {
   double loss = 0.0, duplicate = 0.0, reorder = 0.0;
 };
@@ -44,15 +44,15 @@ class StreamSender {
   };
   void set_channel(const Channel& channel) { channel_ = channel; }
   void set_faults(const PacketFaults& faults) { faults_ = faults; }
-  /// A silent sender drops what it has and what it gets.
+  /// Makes the sender silent: it drops what it has and what it gets.
   void set_silent(bool silent);
 
-  /// Queues the block; its number follows from those before. False if kMaxQueued blocks wait already.
+  /// Queues the block; its number follows from those before. Returns false if kMaxQueued blocks wait already.
   bool send(const wire::Leader& leader, wire::Bytes payload);
   void resend(const wire::PacketResend& request);
-  /// One packet of `channel.packet_size`, for a host that tries sizes.
+  /// Sends one packet of `channel.packet_size`, for a host that tries sizes.
   void send_test_packet(bool do_not_fragment);
-  /// Forgets the queue and the blocks kept.
+  /// Drops the queue and the blocks kept.
   void clear();
   void close();
 
@@ -71,7 +71,7 @@ class StreamSender {
     }
     [[nodiscard]] std::uint32_t last_packet() const { return data_packets() + 1; }
   };
-  /// Packets still to be sent of a block; without one: packets that are not kept.
+  /// Holds the packets still to be sent of a block; without one: packets that are not kept.
   struct Run {
     std::shared_ptr<const Block> block;
     std::uint16_t number = 0;

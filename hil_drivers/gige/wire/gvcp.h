@@ -16,9 +16,9 @@ namespace vbar::gige::wire {
 
 inline constexpr std::uint16_t kGvcpPort = 3956;
 inline constexpr std::size_t kGvcpHeaderBytes = 8;
-/// The largest body of a command or acknowledge: 576 bytes of IP datagram less IP, UDP and GVCP headers.
+/// Largest body of a command or acknowledge: 576 bytes of IP datagram less IP, UDP and GVCP headers.
 inline constexpr std::size_t kMaxGvcpBody = 540;
-/// What a read or write of memory carries besides its address.
+/// Largest payload of a read or write of memory besides its address.
 inline constexpr std::size_t kMaxMemoryBytes = kMaxGvcpBody - 4;
 
 enum class Command : std::uint16_t {
@@ -80,7 +80,7 @@ struct CommandMessage {
   friend bool operator==(const CommandMessage&, const CommandMessage&) = default;
 };
 
-/// A command with a valid header and an invalid body or number, which is answered with `status`.
+/// Holds a command with a valid header and an invalid body or number, which is answered with `status`.
 struct RefusedCommand {
   bool acknowledge = true;
   std::uint16_t command = 0, id = 0;
@@ -88,10 +88,10 @@ struct RefusedCommand {
   std::string reason;
 };
 
-/// A datagram that is not a GVCP command; it is not answered.
+/// Marks a datagram that is not a GVCP command; it is not answered.
 struct ForeignDatagram {};
 
-/// Bytes from the network; any input is accepted.
+/// Decodes bytes from the network; any input is accepted.
 [[nodiscard]] std::variant<CommandMessage, RefusedCommand, ForeignDatagram> decode_command(ByteSpan datagram);
 /// Throws std::length_error if the body exceeds kMaxGvcpBody.
 [[nodiscard]] Bytes encode_command(const CommandMessage& message);

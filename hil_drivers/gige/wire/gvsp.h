@@ -16,12 +16,12 @@
 namespace vbar::gige::wire {
 
 inline constexpr std::size_t kGvspHeaderBytes = 8;
-/// The packet size of a device counts the headers of IP, UDP and GVSP.
+/// Headers of IP, UDP and GVSP, which the packet size of a device counts.
 inline constexpr std::size_t kPacketOverheadBytes = 20 + 8 + kGvspHeaderBytes;
 
 enum class PacketKind : std::uint8_t { kLeader = 1, kTrailer = 2, kData = 3 };
 
-/// What the leader states of the payload; cameras that label images as chunk data exist (Aravis, issue 753).
+/// Type of payload that the leader states; cameras that label images as chunk data exist (Aravis, issue 753).
 enum class PayloadType : std::uint16_t { kImage = 0x0001, kChunkData = 0x0004, kExtendedImage = 0x4001 };
 
 struct StreamHeader {
@@ -51,7 +51,7 @@ struct Data {
   ByteSpan bytes;
 };
 
-/// A packet that carries its status only: the device cannot send it again.
+/// Marks a packet that carries its status only: the device cannot send it again.
 struct NoPayload {};
 
 struct StreamPacket {
@@ -59,13 +59,13 @@ struct StreamPacket {
   std::variant<NoPayload, Leader, Trailer, Data> body;
 };
 
-// Each replaces the content of `datagram`, whose memory is so kept from packet to packet.
+// Encode a packet: each replaces the content of `datagram`, whose memory is so kept from packet to packet.
 void encode_leader(Status status, std::uint16_t block, const Leader& leader, Bytes& datagram);
 void encode_trailer(Status status, std::uint16_t block, std::uint32_t packet, const Trailer& trailer, Bytes& datagram);
 void encode_data(Status status, std::uint16_t block, std::uint32_t packet, ByteSpan bytes, Bytes& datagram);
 void encode_unavailable(std::uint16_t block, std::uint32_t packet, Bytes& datagram);
 
-/// Bytes from the network. Throws std::invalid_argument with the position of the error.
+/// Decodes bytes from the network. Throws std::invalid_argument with the position of the error.
 [[nodiscard]] StreamPacket decode_stream_packet(ByteSpan datagram);
 
 }  // namespace vbar::gige::wire

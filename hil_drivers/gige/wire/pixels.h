@@ -21,9 +21,10 @@ enum class PixelFormat : std::uint32_t {
 [[nodiscard]] const char* name_of(PixelFormat format);
 [[nodiscard]] std::size_t image_bytes(PixelFormat format, std::size_t pixels);
 
-/// `dn`: right-aligned numbers of a converter of `bits`, 8 to 16.
+/// Packs `dn`: right-aligned numbers of a converter of `bits`, 8 to 16.
 [[nodiscard]] Bytes pack_pixels(PixelFormat format, int bits, std::span<const std::uint16_t> dn);
-/// The numbers as they stand in `bytes`, Mono16 with its padding. Throws std::invalid_argument if bytes are missing.
+/// Returns the numbers as they stand in `bytes`, Mono16 with its padding. Throws std::invalid_argument if bytes are
+/// missing.
 [[nodiscard]] std::vector<std::uint16_t> unpack_pixels(PixelFormat format, std::size_t pixels, ByteSpan bytes);
 
 }  // namespace vbar::gige::wire

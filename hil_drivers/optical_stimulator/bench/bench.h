@@ -1,5 +1,5 @@
 #pragma once
-// The whole emulated bench: X server, optics, camera, rails and faults in one directory and one event loop.
+// Emulated testbed: X server, optics, camera, rails and faults in one directory and one event loop.
 
 #include <cstdint>
 #include <filesystem>
@@ -33,7 +33,7 @@ class Bench {
   Bench& operator=(const Bench&) = delete;
 
  private:
-  /// One exposure of what is on the screen.
+  /// Exposes what is on the screen.
   std::vector<std::uint16_t> expose(const ExposureRequest& request);
   [[nodiscard]] double now_s() const;
   [[nodiscard]] RailPlaces rail_places();

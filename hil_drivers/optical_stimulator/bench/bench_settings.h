@@ -1,5 +1,5 @@
 #pragma once
-// The file of an emulated bench: its true optics, display, camera, rails and drift. Neither driver nor calibration
+// File of an emulator: its true optics, display, camera, rails and drift. Neither driver nor calibration
 // reads it.
 
 #include <array>
@@ -78,10 +78,11 @@ struct BenchSettings {
   std::vector<Fault> faults;
 };
 
-/// The bench file with `assignments` (key=value) in place of its values. Throws mission::MissionError.
+/// Reads the emulator's file with `assignments` (key=value) in place of its values. Throws mission::MissionError.
 [[nodiscard]] BenchSettings read_bench(const std::filesystem::path& file, const std::vector<std::string>& assignments);
 
-/// The camera's own figures: those of its file with the errors of the bench. The region is the whole detector.
+/// Returns the camera's own figures: those of its file with the errors of the emulator. The region is the whole
+/// detector.
 [[nodiscard]] twins::camera::CameraSettings camera_of(const BenchSettings& settings,
                                                       const std::filesystem::path& data_directory);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What displaces the display between days and in a session.
+// Displacement of the display between days and in a session.
 
 #include <array>
 #include <cstdint>
@@ -13,7 +13,7 @@ struct Displacement {
   double scale_ppm = 0.0;
 };
 
-/// After a number of exposures; constant over kDriftStep of them.
+/// Returns the displacement after a number of exposures; constant over kDriftStep of them.
 [[nodiscard]] Displacement drift_at(const DriftSettings& drift, std::uint64_t seed, std::uint64_t frame);
 
 inline constexpr std::uint64_t kDriftStep = 64;

@@ -1,5 +1,5 @@
 #pragma once
-// One exposure of the emulated bench, from what is on the screen to the numbers of the camera: optics, light and
+// One exposure of the emulator, from what is on the screen to the numbers of the camera: optics, light and
 // detector without sockets or processes.
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace vbar::optical_stimulator::bench {
 
-/// The true places of the carriages.
+/// Holds the true places of the carriages.
 struct RailPlaces {
   double lens_mm = 40.0;     ///< between the lenses
   double display_mm = 34.3;  ///< display behind lens 2
@@ -28,7 +28,7 @@ class OpticalPath {
  public:
   OpticalPath(const BenchSettings& settings, const twins::camera::CameraSettings& camera);
 
-  /// Exposure number `frame` of a panel that shows `pictures`.
+  /// Exposes exposure number `frame` of a panel that shows `pictures`.
   void expose(const Pictures& pictures, const ExposureRequest& request, const RailPlaces& rails,
               const ExposureFaults& faults, std::uint64_t frame, std::vector<std::uint16_t>& dn);
 
@@ -37,7 +37,7 @@ class OpticalPath {
 
   [[nodiscard]] const BenchOptics& optics() const { return optics_; }
   [[nodiscard]] const CameraHead& camera() const { return camera_; }
-  /// Expected photo-electrons of the last exposure.
+  /// Returns the expected photo-electrons of the last exposure.
   [[nodiscard]] const twins::camera::PhotonImage& light() const { return image_; }
 
  private:

@@ -1,5 +1,6 @@
 #pragma once
-// What a calibration needs of a bench. Behind it are the wires of a real or emulated one, or a model in a test.
+// Interface of a testbed to its calibration. Behind it are the wires of a real or emulated testbed, or a model in a
+// test.
 
 #include <cstdint>
 #include <vector>
@@ -23,7 +24,7 @@ class Eye {
   [[nodiscard]] virtual int width() const = 0;
   [[nodiscard]] virtual int height() const = 0;
   [[nodiscard]] virtual int bits() const = 0;
-  /// The whole detector, right-aligned DN.
+  /// Takes an image of the whole detector, right-aligned DN.
   [[nodiscard]] virtual std::vector<std::uint16_t> take(double exposure_s) = 0;
 };
 

@@ -9,12 +9,13 @@
 
 namespace vbar::optical_stimulator::calibrate {
 
-/// Two frames of the same scene.
+/// Holds two frames of the same scene.
 struct FramePair {
   std::vector<std::uint16_t> first, second;
 };
 
-/// Mean, and variance of one frame by half the variance of the difference: the scene and fixed patterns cancel.
+/// Holds the mean, and the variance of one frame by half the variance of the difference: the scene and fixed patterns
+/// cancel.
 struct MeanVariance {
   double mean_dn = 0.0, variance_dn2 = 0.0;
   double variance_sigma_dn2 = 0.0;
@@ -28,14 +29,14 @@ inline constexpr double kNoiseShare = 0.3;
 /// left out.
 [[nodiscard]] MeanVariance mean_variance(const FramePair& pair, int width, int height);
 
-/// The line variance = read variance + gain (mean - offset), by weighted least squares; `black` is the pair without
-/// light. Throws std::runtime_error if the gain is not positive.
+/// Fits the line variance = read variance + gain (mean - offset), by weighted least squares; `black` is the pair
+/// without light. Throws std::runtime_error if the gain is not positive.
 struct GainFit {
   Figure gain_dn_per_electron, read_noise_electrons;
 };
 [[nodiscard]] GainFit fit_gain(const MeanVariance& black, const std::vector<MeanVariance>& grey);
 
-/// Mean black pictures at two exposures: offset at none, background rate, and pixels whose rate is far above it.
+/// Fits mean black pictures at two exposures: offset at none, background rate, and pixels whose rate is far above it.
 struct BlackFit {
   Figure offset_dn, background_dn_per_s;
   std::vector<HotPixel> hot_pixels;  ///< electrons_per_s holds DN/s here

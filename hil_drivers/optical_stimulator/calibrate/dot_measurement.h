@@ -8,7 +8,7 @@
 
 namespace vbar::optical_stimulator::calibrate {
 
-/// Pixels of the whole detector, DN, row by row; a mean over frames.
+/// Holds pixels of the whole detector, DN, row by row; a mean over frames.
 struct CameraPicture {
   int width = 0, height = 0;
   std::vector<float> dn;
@@ -34,8 +34,9 @@ struct DotMeasurement {
   double background_dn = 0.0;
 };
 
-/// Iterated Gaussian-weighted centroid (SExtractor's windowed positions, docs of SExtractor 2.19, section 10.7.1).
-/// Empty if there is no light, if the square reaches beyond the picture, or if the iteration leaves the search area.
+/// Measures a dot by the iterated Gaussian-weighted centroid (SExtractor's windowed positions, docs of SExtractor 2.19,
+/// section 10.7.1). Empty if there is no light, if the square reaches beyond the picture, or if the iteration leaves
+/// the search area.
 [[nodiscard]] std::optional<DotMeasurement> measure_dot(const CameraPicture& picture, const fsw::Vector2& expected_px,
                                                         const DotWindow& window);
 

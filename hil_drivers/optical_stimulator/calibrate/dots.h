@@ -1,5 +1,5 @@
 #pragma once
-// Picture of a display that show dots, and where in linear light those dots are.
+// Pictures of a display that show dots, and the places of those dots in linear light.
 
 #include <cstdint>
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace vbar::optical_stimulator::calibrate {
 
-/// Relative luminance of a count: ((D - first)/(255 - first))^gamma.
+/// Holds the relative luminance of a count: ((D - first)/(255 - first))^gamma.
 struct Response {
   double gamma = 2.2;
   double first_count = 0.0;
@@ -18,18 +18,18 @@ struct Response {
   [[nodiscard]] std::uint8_t nearest_count(double luminance) const;
 };
 
-/// What the counts show, in linear light.
+/// Describes what the counts show, in linear light.
 struct DrawnDot {
   fsw::Vector2 centre_px;    ///< centroid of the luminance of the rounded counts
   double full_pixels = 0.0;  ///< luminance, in full pixels
 };
 
-/// A Gaussian of a total luminance, its counts rounded, over 7 x 7 pixels. Rounding moves its centroid: the result is
-/// where it is shown. Empty if it does not lie on the display.
+/// Draws a Gaussian of a total luminance, its counts rounded, over 7 x 7 pixels. Rounding moves its centroid: the
+/// result is the place at which it is shown. Empty if it does not lie on the display.
 std::optional<DrawnDot> draw_dot(Picture& counts, const fsw::Vector2& centre_px, double sigma_px, double full_pixels,
                                  const Response& response);
 
-/// A square of equal counts about a pixel.
+/// Draws a square of equal counts about a pixel.
 DrawnDot draw_square(Picture& counts, int x, int y, int half_width, std::uint8_t count, const Response& response);
 
 }  // namespace vbar::optical_stimulator::calibrate

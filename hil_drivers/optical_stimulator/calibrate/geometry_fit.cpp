@@ -158,7 +158,7 @@ std::vector<Residual> residuals_of(const DisplayMap& map, const std::vector<Dot>
   std::vector<Residual> residuals;
   for (const Dot& dot : dots) {
     const fsw::Vector3 error = map.direction_of(dot.display_px) - dot.direction_camera;
-    // Across the line of sight: angle and length differ by 1e-10 of it.
+    // Across the line of sight: angle and length differ by 1e-10 of the length.
     const fsw::Vector3 x_axis = fsw::Vector3::UnitY().cross(dot.direction_camera).normalized();
     const fsw::Vector3 y_axis = dot.direction_camera.cross(x_axis);
     residuals.push_back({dot.camera_px, kArcsecPerRad * Vector2(error.dot(x_axis), error.dot(y_axis))});

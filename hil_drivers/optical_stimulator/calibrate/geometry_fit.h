@@ -1,5 +1,5 @@
 #pragma once
-// The display map of measured dots: lens terms, then a polynomial field of what they leave.
+// Display map by measured dots: lens terms, then a polynomial field for the residuals of the lens terms.
 
 #include <vector>
 
@@ -18,12 +18,12 @@ struct GeometryFit {
   int dots_used = 0;             ///< without outliers
 };
 
-/// `start`: size of the display, and lens terms near the solution. The degree of the field and the weight of its
-/// smoothness are those that predict a third of the dots, left out and spread over the whole grid, best; the field is
-/// then fitted to all dots. Throws std::runtime_error if the fit does not converge or the dots are too few.
+/// Fits from `start`: size of the display, and lens terms near the solution. The degree of the field and the weight of
+/// its smoothness are those that predict a third of the dots, left out and spread over the whole grid, best; the field
+/// is then fitted to all dots. Throws std::runtime_error if the fit does not converge or the dots are too few.
 [[nodiscard]] GeometryFit fit_geometry(const std::vector<Dot>& dots, const DisplayMapParameters& start);
 
-/// A dot that was not used in the fit.
+/// Holds a dot that was not used in the fit.
 struct Residual {
   fsw::Vector2 camera_px;
   fsw::Vector2 error_arcsec;  ///< where the map says that the camera sees it less where it does, along x and y

@@ -1,5 +1,5 @@
 #pragma once
-// What a calibration has to reach, on dots that the fit did not use.
+// Goals of a calibration, on dots that the fit did not use.
 
 namespace vbar::optical_stimulator::calibrate {
 

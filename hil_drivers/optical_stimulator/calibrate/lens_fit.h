@@ -9,7 +9,7 @@
 
 namespace vbar::optical_stimulator::calibrate {
 
-/// A displayed dot and where the camera saw it.
+/// Holds a displayed dot and where the camera saw it.
 struct Dot {
   fsw::Vector2 display_px;        ///< centre of its light on the display
   fsw::Vector2 camera_px;         ///< measured
@@ -24,8 +24,8 @@ struct LensFit {
 
 enum class LensFreedom { kPose, kAll };  ///< kPose: centre, scale and rotation
 
-/// From `start`. The loss grows as the logarithm beyond `outlier_px` (Cauchy), so that a dot that was taken for another
-/// has little weight.
+/// Fits from `start`. The loss grows as the logarithm beyond `outlier_px` (Cauchy), so that a dot that was mistaken for
+/// another has little weight.
 [[nodiscard]] LensFit fit_lens(const std::vector<Dot>& dots, const LensTerms& start, LensFreedom freedom,
                                double outlier_px);
 

@@ -23,7 +23,7 @@ struct ProcedureSettings {
   twins::camera::CameraSettings camera;  ///< the camera's file: optics, region and exposure of the flight's images
   double lens_mm = 25.0;                 ///< position of the axis of lens 2
   double display_mm = 14.29;             ///< position of the axis of the display where the search for the focus begins
-  double focus_range_mm = 0.5;           ///< on both sides of it
+  double focus_range_mm = 0.5;           ///< range on both sides of the focus
   GridSize geometry_grid{40, 25}, held_out_grid{27, 17}, uniformity_grid{16, 10};
   int focus_steps = 11, fine_focus_steps = 9;
   int grey_levels = 8;
@@ -33,7 +33,8 @@ struct ProcedureSettings {
   std::uint64_t seed = 1;  ///< random stream of the places of the dots held out
 };
 
-/// A third of the pictures, for a test of the whole path: its figures are two to three times less precise.
+/// Returns settings with a third of the pictures, for a test of the whole path: its figures are two to three times less
+/// precise.
 [[nodiscard]] ProcedureSettings quick(ProcedureSettings settings);
 
 struct Bench {
@@ -47,17 +48,17 @@ class Session {
   using Progress = std::function<void(const std::string&)>;
   Session(const Bench& bench, const ProcedureSettings& settings, Progress progress);
 
-  /// Mean of frames, with hot pixels replaced once they are known.
+  /// Returns the mean of frames, with hot pixels replaced once they are known.
   [[nodiscard]] CameraPicture picture(double exposure_s, int frames);
-  /// The same at an exposure that brings the highest pixels near half of the range; starts at `exposure_s` and returns
-  /// the exposure in it. Exposures end at the limits of the settings.
+  /// Returns a picture at an exposure that brings the highest pixels near half of the range; starts at `exposure_s` and
+  /// returns the exposure in it. Exposures end at the limits of the settings.
   [[nodiscard]] CameraPicture well_exposed(double& exposure_s, int frames);
   [[nodiscard]] bool is_saturated(double peak_dn) const { return peak_dn > 0.9 * range_dn(); }
   [[nodiscard]] double range_dn() const { return static_cast<double>((1 << bench.eye.bits()) - 1); }
 
-  /// Camera pixel of a display pixel, as far as the geometry is known.
+  /// Returns the camera pixel of a display pixel, as far as the geometry has been fitted.
   [[nodiscard]] fsw::Vector2 expected_px(const fsw::Vector2& display_px) const;
-  /// Whether a window of `margin_px` about a camera pixel lies on the detector.
+  /// Returns true if a window of `margin_px` about a camera pixel lies on the detector.
   [[nodiscard]] bool is_on_detector(const fsw::Vector2& camera_px, double margin_px) const;
   void set_map(const DisplayMapParameters& parameters);
   [[nodiscard]] const DisplayMap& map() const { return map_; }

@@ -1,5 +1,5 @@
 #pragma once
-// The result of a calibration of the Optical Stimulator: what vbar_os_calibrate writes and the driver reads.
+// Result of a calibration of the Optical Stimulator: vbar_os_calibrate writes the file, and the driver reads it.
 
 #include <array>
 #include <filesystem>
@@ -12,13 +12,14 @@
 
 namespace vbar::optical_stimulator {
 
-/// A fitted figure and its standard deviation.
+/// Holds a fitted figure and its standard deviation.
 struct Figure {
   double value = 0.0;
   double sigma = 0.0;
 };
 
-/// Where and with what the calibration was made. With another magnification, display or camera it does not hold.
+/// States where and with which devices the calibration was made. With another magnification, display or camera it is
+/// invalid.
 struct Validity {
   std::string date_utc;   ///< ISO 8601
   bool emulated = false;  ///< the camera names itself an emulator in its manufacturer-info register
@@ -31,8 +32,8 @@ struct Validity {
   double exposure_s = 0.2;                           ///< exposure of the flight's images
 };
 
-/// Relative light of a full display pixel over the display, both lenses' vignetting included: bilinear between the
-/// values at the nodes, constant beyond the outermost.
+/// Holds the relative light of a full display pixel over the display, both lenses' vignetting included: bilinear
+/// between the values at the nodes, constant beyond the outermost.
 struct UniformityGrid {
   int columns = 0, rows = 0;
   fsw::Vector2 first_px{0.0, 0.0};  ///< display pixel of the first node
@@ -43,7 +44,8 @@ struct UniformityGrid {
   [[nodiscard]] double at(const fsw::Vector2& display_px) const;
 };
 
-/// Light of one display pixel of count D in the camera, photo-electrons on its whole image per second of exposure:
+/// Holds the light of one display pixel of count D in the camera, photo-electrons on its whole image per second of
+/// exposure:
 ///   uniformity (full_pixel ((D - first_count)/(255 - first_count))^gamma + black_pixel), the power for D >
 ///   first_count.
 struct CountsToLight {
@@ -53,7 +55,7 @@ struct CountsToLight {
   Figure first_count;     ///< D0
   double residual = 0.0;  ///< rms relative difference of the measured dots from the curve
 
-  /// full_pixel / black_pixel.
+  /// Returns full_pixel / black_pixel.
   [[nodiscard]] double contrast() const { return full_pixel_electrons_per_s.value / black_pixel_electrons_per_s.value; }
   /// Returns the light by the formula above, without uniformity and black level.
   [[nodiscard]] double electrons_per_s(double count) const;
@@ -74,7 +76,7 @@ struct CameraFigures {
   std::vector<HotPixel> hot_pixels;
 };
 
-/// Angle between where the map says a dot of the held-out set is seen and where the camera saw it, arcsec.
+/// Holds the angle between where the map says a dot of the held-out set is seen and where the camera saw it, arcsec.
 struct ResidualFigures {
   double mean_arcsec = 0.0, p95_arcsec = 0.0;
   int dots = 0;
@@ -97,7 +99,7 @@ struct BenchCalibration {
   HeldOutResiduals held_out;
   double centroid_floor_px = 0.0;  ///< camera pixels, an axis: what the flight software is to add to a star's centroid
 
-  /// Photo-electrons per second on the whole image of a display pixel with count 255, without the black level.
+  /// Returns photo-electrons per second on the whole image of a display pixel with count 255, without the black level.
   [[nodiscard]] double full_pixel_electrons_per_s(const fsw::Vector2& display_px) const {
     return uniformity.at(display_px) * light.full_pixel_electrons_per_s.value;
   }
@@ -107,7 +109,7 @@ struct BenchCalibration {
 [[nodiscard]] BenchCalibration load_calibration(const std::filesystem::path& file);
 [[nodiscard]] BenchCalibration parse_calibration(std::string_view text, const std::string& file);
 
-/// TOML; the shortest decimal numbers that read back as the same bits.
+/// Returns TOML; the shortest decimal numbers that read back as the same bits.
 [[nodiscard]] std::string toml_of(const BenchCalibration& calibration);
 /// Replaces the file as a whole.
 void save_calibration(const BenchCalibration& calibration, const std::filesystem::path& file);

@@ -1,5 +1,5 @@
 #pragma once
-// The light of a display's pixels, as calibrated:
+// Light of a display's pixels, as calibrated:
 //   L(D) = L_full ((D - D0) / (255 - D0))^gamma for D > D0, 0 below, + L_full / contrast,
 // with an L_full of each pixel, which contains the evenness of the display and the vignetting of the optics.
 
@@ -35,22 +35,22 @@ class DisplayLight {
                            static_cast<std::size_t>(x)];
   }
 
-  /// Light of a count relative to a full pixel, 0 to 1, less the black level.
+  /// Returns the light of a count relative to a full pixel, 0 to 1, less the black level.
   [[nodiscard]] double fraction(int count) const { return fractions_[static_cast<std::size_t>(count)]; }
 
-  /// The count whose light is nearest to that fraction, which need not lie between 0 and 1.
+  /// Returns the count whose light is nearest to that fraction, which need not lie between 0 and 1.
   [[nodiscard]] std::uint8_t nearest_count(double fraction) const;
 
-  // The counts of different light next to one; a count itself if there is none.
+  // Return the counts of different light next to one; the count itself if there is none.
   [[nodiscard]] int above(int count) const {
     return count < first_lit_ ? first_lit_ : count < kFull ? count + 1 : count;
   }
   [[nodiscard]] int below(int count) const { return count > first_lit_ ? count - 1 : 0; }
 
-  /// The least light above black, as a fraction.
+  /// Returns the smallest light above black, as a fraction.
   [[nodiscard]] double least_fraction() const { return fraction(first_lit_); }
 
-  /// Electrons of a pixel at black.
+  /// Returns the electrons of a pixel at black.
   [[nodiscard]] double black_electrons(int x, int y) const { return full_electrons(x, y) / contrast_; }
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// The counts of a point: as light is quantised pixel by pixel, a point's flux and centroid would err; counts chosen
+// Counts of a point: as light is quantised pixel by pixel, a point's flux and centroid would err; counts chosen
 // together keep both.
 
 #include <array>
@@ -11,12 +11,13 @@ namespace vbar::optical_stimulator {
 
 inline constexpr int kPatchReach = 2;
 inline constexpr int kPatchSide = 2 * kPatchReach + 1;
-/// Rows from the top.
+/// Holds values, rows from the top.
 template <class Value>
 using Patch = std::array<Value, static_cast<std::size_t>(kPatchSide) * kPatchSide>;
 
-/// Counts of the patch about the pixel (x, y), which must lie that far from the edges, for the `electrons` wanted of
-/// its pixels. From the nearest counts a greedy search takes the single or paired step of one count that decreases
+/// Returns counts of the patch about the pixel (x, y), which must lie that far from the edges, for the `electrons`
+/// wanted of its pixels. From the nearest counts a greedy search takes the single or paired step of one count that
+/// decreases
 ///   (0.3 dF/F)^2 + dx^2 + dy^2
 /// most, of the flux F and the centroid (x, y) of the light shown, until none does.
 [[nodiscard]] Patch<std::uint8_t> matched_counts(const DisplayLight& light, int x, int y,

@@ -1,5 +1,5 @@
 #pragma once
-// What a display shows: a grey count for each pixel.
+// Picture of a display: a grey count for each pixel.
 
 #include <cstddef>
 #include <cstdint>

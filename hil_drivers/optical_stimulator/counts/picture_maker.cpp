@@ -118,7 +118,7 @@ void PictureMaker::draw_point(const Point& point, Picture& picture, PictureFigur
     const auto place = static_cast<std::size_t>(y - region.y) * static_cast<std::size_t>(region.width) +
                        static_cast<std::size_t>(x - region.x);
     if (is_drawn_[place] != 0)
-      return;  // a brighter point has a pixel of it: both are drawn, this one as extended light
+      return;  // a brighter point has one of its pixels: both are drawn, this one as extended light
     wanted[k] = wanted_at(x, y);
     flux += wanted[k];
     brightest = std::max(brightest, wanted[k] / light_.full_electrons(x, y));

@@ -32,7 +32,7 @@ class Display {
   /// threads at a time. Throws std::runtime_error if the window has been lost or the X server does not answer.
   void show(const Picture& picture);
 
-  /// What the X server says the screen shows there now.
+  /// Returns what the X server says the screen shows there now.
   [[nodiscard]] Picture read_back() const;
 
  private:

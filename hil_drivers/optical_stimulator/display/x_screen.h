@@ -1,5 +1,5 @@
 #pragma once
-// Questions to an X server that SDL does not ask.
+// Requests to an X server that SDL does not make.
 
 #include <chrono>
 #include <condition_variable>
@@ -13,10 +13,11 @@ struct _XDisplay;  // Xlib's Display, whose header defines common words as macro
 
 namespace vbar::optical_stimulator {
 
-/// Without it Xlib ends the program when the server goes away. `is_lost` is set then; it outlives the connection.
+/// Survives the loss of the server: by default Xlib then ends the program. `is_lost` is set then; it outlives the
+/// connection.
 void survive_loss(_XDisplay* connection, bool& is_lost);
 
-/// While it lives, requests to the server have a time limit: beyond it the connection is shut down, which ends them as
+/// Sets a time limit to requests while it lives: beyond it the connection is shut down, which ends them as
 /// the loss of a server does (survive_loss). A server that is stopped would block them forever.
 class AnswerLimit {
  public:
@@ -36,11 +37,12 @@ class AnswerLimit {
 /// Returns when the server has executed all requests of the connection.
 void wait_for_server(_XDisplay* connection);
 
-/// The rectangle of the screen from (x, y) on, windows of all programs included. Throws std::runtime_error if a pixel
-/// is not grey or the screen cannot be read.
+/// Reads the rectangle of the screen from (x, y) on, windows of all programs included. Throws std::runtime_error if a
+/// pixel is not grey or the screen cannot be read.
 [[nodiscard]] Picture read_screen(_XDisplay* connection, int x, int y, int width, int height);
 
-/// Empty: every gamma ramp of the screen is an identity, or it has none. Else what is not.
+/// Returns the gamma ramp of the screen that is not an identity; empty: every one is an identity, or the screen has
+/// none.
 [[nodiscard]] std::string gamma_complaint(_XDisplay* connection);
 
 }  // namespace vbar::optical_stimulator

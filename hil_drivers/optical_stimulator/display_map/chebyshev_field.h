@@ -1,5 +1,5 @@
 #pragma once
-// A smooth vector field on a rectangle of the display: the part of the bench's geometry that no lens model represents.
+// Smooth vector field on a rectangle of the display: the part of the testbed's geometry that no lens model represents.
 
 #include <cstddef>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace vbar::optical_stimulator {
 
-/// Sums of products T_i(u) T_j(v) of Chebyshev polynomials with i + j <= degree, one sum for each axis; u and v run
+/// Sums products T_i(u) T_j(v) of Chebyshev polynomials with i + j <= degree, one sum for each axis; u and v run
 /// from -1 to 1 over the domain. Outside the domain the field has the value of the nearest point of its edge:
 /// polynomials diverge where no dot was measured.
 struct ChebyshevField {
@@ -24,12 +24,12 @@ struct ChebyshevField {
   }
 };
 
-/// Values of the products at a display point and their derivatives by its coordinates, 1/px.
+/// Holds values of the products at a display point and their derivatives by its coordinates, 1/px.
 struct ChebyshevTerms {
   std::vector<double> value, by_x, by_y;
 };
 
-/// In the order (0,0), (1,0), (0,1), (2,0), (1,1), (0,2), ...: by i + j, then by j.
+/// Returns the terms in the order (0,0), (1,0), (0,1), (2,0), (1,1), (0,2), ...: by i + j, then by j.
 [[nodiscard]] ChebyshevTerms chebyshev_terms(const ChebyshevField& field, const fsw::Vector2& pixel);
 
 struct FieldValue {

@@ -1,5 +1,5 @@
 #pragma once
-// The lens part of the display map, templated on the scalar: the map evaluates it with double, the fit with dual
+// Lens part of the display map, templated on the scalar: the map evaluates it with double, the fit with dual
 // numbers.
 
 #include <array>
@@ -8,8 +8,8 @@
 
 namespace vbar::optical_stimulator {
 
-/// Direction to display pixel by OpenCV's model: rotation about the boresight, Brown-Conrady distortion, tilt of the
-/// display, scale and centre.
+/// Converts a direction to a display pixel by OpenCV's model: rotation about the boresight, Brown-Conrady distortion,
+/// tilt of the display, scale and centre.
 struct LensTerms {
   static constexpr std::size_t kCount = 11;
 
@@ -23,7 +23,8 @@ struct LensTerms {
   [[nodiscard]] static LensTerms of(const std::array<double, kCount>& values);
 };
 
-/// Display pixel of the tangent-plane point (x, y) = (direction x, y)/z; `terms` in the order of LensTerms::values().
+/// Returns the display pixel of the tangent-plane point (x, y) = (direction x, y)/z; `terms` in the order of
+/// LensTerms::values().
 template <typename T>
 std::array<T, 2> lens_pixel(const T* terms, const T& plane_x, const T& plane_y) {
   using std::cos;

@@ -1,6 +1,6 @@
 #pragma once
-// Which display pixel sends light to the camera from a given direction. It takes the place of the lens when a scene is
-// rendered for the display.
+// Map from a direction to the display pixel that sends light to the camera from there. It takes the place of the lens
+// when a scene is rendered for the display.
 
 #include <optional>
 
@@ -11,7 +11,7 @@
 
 namespace vbar::optical_stimulator {
 
-/// Motion of the display since calibration: a rotation and a scale about the display's middle, then a shift.
+/// Holds the motion of the display since calibration: a rotation and a scale about the display's middle, then a shift.
 struct DayCorrection {
   fsw::Vector2 shift_px = fsw::Vector2::Zero();  ///< display pixels
   double rotation_rad = 0.0;
@@ -24,21 +24,21 @@ struct DisplayMapParameters {
   ChebyshevField field;  ///< added to what the lens terms give
 };
 
-/// Directions are those that the camera's own model (twins::camera::Optics of the camera file) assigns to its pixels.
+/// Maps directions that the camera's own model (twins::camera::Optics of the camera file) assigns to its pixels.
 /// Light from the display pixel project(direction) arrives at the camera pixel where that model places `direction`.
 class DisplayMap final : public twins::camera::Projection {
  public:
   explicit DisplayMap(const DisplayMapParameters& parameters, const DayCorrection& correction = {});
 
-  /// Empty if the direction is more than 70 deg off the boresight. Beyond the display's corners the distortion
-  /// continues in proportion to the angle's tangent: its polynomial would fold distant directions back onto the
-  /// display.
+  /// Returns nothing if the direction is more than 70 deg off the boresight. Beyond the display's corners the
+  /// distortion continues in proportion to the angle's tangent: its polynomial would fold distant directions back onto
+  /// the display.
   [[nodiscard]] std::optional<fsw::Vector2> project(const fsw::Vector3& direction_camera) const override;
   [[nodiscard]] fsw::Vector2 image_velocity(const fsw::Vector3& direction_camera,
                                             const fsw::Vector3& rate_camera) const override;
-  /// By Newton's method; to 1e-9 px on the display.
+  /// Inverts by Newton's method; to 1e-9 px on the display.
   [[nodiscard]] fsw::Vector3 direction_of(const fsw::Vector2& pixel) const override;
-  /// 1 everywhere: the light that a display pixel causes in the camera is in the calibration's uniformity.
+  /// Returns 1 everywhere: the light that a display pixel causes in the camera is in the calibration's uniformity.
   [[nodiscard]] double vignetting(const fsw::Vector2& pixel) const override;
   [[nodiscard]] double focal_length_px() const override { return focal_length_px_; }
 

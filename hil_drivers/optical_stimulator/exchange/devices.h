@@ -1,5 +1,5 @@
 #pragma once
-// Display and camera of a bench, as the exchange of a picture for an image uses them.
+// Interfaces of display and camera to the exchange of a picture for an image.
 
 #include <cstdint>
 #include <vector>
@@ -33,9 +33,10 @@ class FrameCamera {
   FrameCamera& operator=(const FrameCamera&) = delete;
   virtual ~FrameCamera() = default;
 
-  /// A new exposure, whole. Throws std::runtime_error, one sentence that names the camera, if it does not deliver.
+  /// Takes a new exposure, whole. Throws std::runtime_error, one sentence that names the camera, if it does not
+  /// deliver.
   virtual CameraFrame take() = 0;
-  /// Opens it again with all its settings. Throws as take().
+  /// Opens the camera again with all its settings. Throws as take().
   virtual void reopen() = 0;
 };
 

@@ -26,7 +26,7 @@ class Watch {
   Clock::time_point start_ = Clock::now();
 };
 
-constexpr int kWrongBrightness = 2;  // images of it that end the run
+constexpr int kWrongBrightness = 2;  // images of wrong brightness that end the run
 
 }  // namespace
 

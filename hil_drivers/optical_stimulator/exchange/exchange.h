@@ -1,6 +1,6 @@
 #pragma once
-// A picture for an image: shows the picture, takes an image and accepts it only if the frame strip in it says that it
-// shows this picture at the calibrated brightness. Else it takes another one, a number of times.
+// Exchange of a picture for an image: shows the picture, takes an image and accepts it only if the frame strip in it
+// states that it shows this picture at the calibrated brightness. Else it takes another one, a number of times.
 
 #include <atomic>
 #include <chrono>
@@ -46,10 +46,10 @@ class Exchange {
   /// std::runtime_error, one sentence, when all tries have failed or after cancel().
   ExchangedImage take(Picture& picture);
 
-  /// Number of the picture to come.
+  /// Returns the number of the next picture.
   [[nodiscard]] std::uint16_t next_frame() const { return next_; }
 
-  /// From another thread: take() does not wait any longer.
+  /// Cancels from another thread: take() does not wait any longer.
   void cancel() { is_cancelled_ = true; }
 
  private:

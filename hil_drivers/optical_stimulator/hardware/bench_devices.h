@@ -1,5 +1,5 @@
 #pragma once
-// Display, camera and rails of a bench, opened and configured for its calibration.
+// Display, camera and rails of a testbed, opened and configured for its calibration.
 
 #include <chrono>
 #include <memory>
@@ -24,13 +24,13 @@ struct DevicePlan {
   int retries = 3;
 };
 
-/// What the camera says of itself.
+/// Holds what the camera states of itself.
 struct CameraIdentity {
   std::string vendor, model, serial;
   bool is_emulated = false;
 };
 
-/// Places of the axes, as the rails report them.
+/// Holds places of the axes, as the rails report them.
 struct RailPositions {
   double lens_mm = 0.0, display_mm = 0.0;
 };
@@ -48,9 +48,10 @@ class BenchDevices {
   [[nodiscard]] Screen& screen();
   [[nodiscard]] FrameCamera& camera();
   [[nodiscard]] const CameraIdentity& identity() const;
-  /// Empty without rails. Throws std::runtime_error if an axis is not held where the calibration was made.
+  /// Returns the places of the axes; empty without rails. Throws std::runtime_error if an axis is not held where the
+  /// calibration was made.
   [[nodiscard]] std::optional<RailPositions> check_rails();
-  /// From another thread: the camera does not wait for an image any longer.
+  /// Stops from another thread: the camera does not wait for an image any longer.
   void stop() noexcept;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// The pictures of exposures: the twin's renderer with the display map in the place of the lens puts the photo-electrons
+// Pictures of exposures: the twin's renderer with the display map in the place of the lens puts the photo-electrons
 // that each pixel of the display shall cause in the camera on that pixel. No image is warped or interpolated.
 
 #include <functional>

@@ -9,7 +9,8 @@
 
 namespace vbar::optical_stimulator {
 
-/// A dot: where the calibrated map says that light seen by the camera comes from, and where it came from. Display px.
+/// Holds a dot: where the calibrated map says that light seen by the camera comes from, and where it came from. Display
+/// px.
 struct DotPair {
   fsw::Vector2 by_map{0.0, 0.0};
   fsw::Vector2 shown{0.0, 0.0};
@@ -20,7 +21,8 @@ struct FittedDay {
   std::vector<double> residuals_px;  ///< distances that the correction leaves
 };
 
-/// Least squares; `middle` is the display's, about which rotation and scale are. At least two dots at two places.
+/// Fits by least squares; `middle` is the display's, about which rotation and scale are. At least two dots at two
+/// places.
 [[nodiscard]] FittedDay fit_day(std::span<const DotPair> dots, const fsw::Vector2& middle);
 
 }  // namespace vbar::optical_stimulator

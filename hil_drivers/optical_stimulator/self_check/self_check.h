@@ -1,6 +1,6 @@
 #pragma once
-// Before each run: whether the bench is still the one that was calibrated. Dots at places that are not of the
-// calibration's grid, black frames and a grey one, in a few seconds.
+// Check before each run that the testbed is still the one that was calibrated. It shows dots at places that are not on
+// the calibration's grid, black frames and a grey one, in a few seconds.
 
 #include <functional>
 #include <string>
@@ -14,7 +14,7 @@
 
 namespace vbar::optical_stimulator {
 
-// Accepted. The shift is 10 um of the display.
+// Limits for acceptance. The shift is 10 um of the display.
 inline constexpr double kResidualLimit_arcsec = 3.0;
 inline constexpr double kShiftLimit_px = 1.0;
 inline constexpr double kScaleLimit_ppm = 200.0;
@@ -27,11 +27,11 @@ struct SelfCheckFigures {
   DayCorrection correction;
   double brightness = 0.0;  ///< brightness of the grey frame, relative to the calibration
   double noise = 0.0;       ///< noise of black frames, relative to the calibration
-  double offset = 0.0;      ///< likewise
+  double offset = 0.0;      ///< offset of black frames, relative to the calibration
   int new_hot_pixels = 0;   ///< in the region of the image
 };
 
-/// Empty: accepted. Else each figure that is not, with what is accepted.
+/// Returns each figure that is beyond its limit, with the limit; empty: accepted.
 [[nodiscard]] std::string complaint_of(const SelfCheckFigures& figures);
 
 class SelfCheck {

@@ -10,7 +10,7 @@
 
 namespace vbar::optical_stimulator {
 
-/// Camera pixel (of the detector) that a pixel of the display illuminates.
+/// Returns the camera pixel (of the detector) that a pixel of the display illuminates.
 using CameraPixelOf = std::function<fsw::Vector2(const fsw::Vector2& display_pixel)>;
 
 class FrameStrip {

@@ -1,5 +1,5 @@
 #pragma once
-// The frame strip: rows of the camera above the image, read with it, in which the display shows which picture it shows.
+// Frame strip: rows of the camera above the image, read with it, in which the display shows the number of its picture.
 //
 //   rows 0 to 7    black
 //   rows 8 to 27   24 cells of 20 x 20 camera pixels, in the middle of the rows
@@ -24,11 +24,11 @@ using Cells = std::array<bool, kCells>;
 
 [[nodiscard]] Cells cells_of(std::uint16_t frame);
 
-/// The region that is read: that of the image and the strip above it. Throws std::invalid_argument if the detector has
-/// no rows for it or the image is narrower than the strip.
+/// Returns the region that is read: that of the image and the strip above it. Throws std::invalid_argument if the
+/// detector has no rows for it or the image is narrower than the strip.
 [[nodiscard]] twins::camera::Region region_with_strip(const twins::camera::Region& image);
 
-/// Column of the left edge of the cells in a region of that width.
+/// Returns the column of the left edge of the cells in a region of that width.
 [[nodiscard]] constexpr int cells_left(int width) {
   return (width - kCells * kCellSide) / 2;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Reads the frame strip of an image of the camera.
+// Reader of the frame strip in an image of the camera.
 
 #include <cstdint>
 #include <span>
@@ -22,8 +22,8 @@ struct StripReading {
   double white_dn = 0.0;    ///< level of the brightest cells; if the strip has been read: of the references
 };
 
-/// `dn`: an image of that width, the strip's rows first; at least kStripRows of it. Cells that differ by less than
-/// `contrast_dn` are not a strip. Throws std::invalid_argument for an image without the rows.
+/// Reads the strip of `dn`: an image of that width, the strip's rows first; at least kStripRows rows. Cells that differ
+/// by less than `contrast_dn` are not a strip. Throws std::invalid_argument for an image without the rows.
 [[nodiscard]] StripReading read_strip(std::span<const std::uint16_t> dn, int width, double contrast_dn);
 
 }  // namespace vbar::optical_stimulator

@@ -31,7 +31,7 @@ namespace calibrate = os::calibrate;
 enum ExitCode { kReached = 0, kFailed = 1, kMissed = 3 };
 
 struct Options {
-  std::string bench;  ///< command line of an emulated bench
+  std::string bench;  ///< command line of an emulator
   std::uint64_t seed = 1;
   std::string camera, x_display, output, rails;
   std::filesystem::path out, camera_file;

@@ -1,5 +1,5 @@
 #pragma once
-// The bench of a calibration over its wires: X display, GigE Vision camera, Zaber rails.
+// Testbed under calibration over its wires: X display, GigE Vision camera, Zaber rails.
 
 #include <chrono>
 #include <memory>
@@ -30,7 +30,7 @@ class WiredBench {
   WiredBench& operator=(const WiredBench&) = delete;
 
   [[nodiscard]] Bench bench();
-  /// Camera and emulation.
+  /// Fills in the camera and whether the testbed is emulated.
   void identify(Validity& validity) const;
   [[nodiscard]] std::string transport() const;
   [[nodiscard]] int frames() const;

@@ -1,5 +1,5 @@
 #pragma once
-// The whole emulated bench: robots, motion capture, lights and camera on one clock, in one directory and one event
+// Emulated testbed: robots, motion capture, lights and camera on one clock, in one directory and one event
 // loop.
 
 #include <atomic>
@@ -31,7 +31,7 @@
 
 namespace vbar::tron::bench {
 
-/// Where the bench is made and whom it serves.
+/// States where the emulator is made and whom it serves.
 struct BenchPlace {
   std::filesystem::path data;       ///< folder of the project's data
   std::filesystem::path directory;  ///< for sockets, addresses.json, faults.jsonl, truth.csv, summary.json
@@ -53,12 +53,12 @@ class Bench {
  private:
   void begin_cycle(std::uint64_t cycle);
   void end_motion();
-  /// What an exposure that begins now sees; it is written to the log of truth.
+  /// Returns the view of an exposure that begins now; it is written to the log of truth.
   LabView look(const gige::Request& request);
-  /// On the camera's thread.
+  /// Renders on the camera's thread.
   std::vector<std::uint16_t> render(const LabView& view);
   void end_exposure();
-  /// False for a fault that is not one of motion capture or lights.
+  /// Returns false for a fault that is not one of motion capture or lights.
   bool set_light_or_capture(const Fault& fault, bool is_on);
   void act(const Fault& fault, bool is_on);
   void control(const std::string& line, const bench_lines::Answer& answer);

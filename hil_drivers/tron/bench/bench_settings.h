@@ -1,5 +1,5 @@
 #pragma once
-// The file of an emulated bench (data/benches/tron_emulated.toml): the laboratory, hidden errors, clock, camera.
+// File of an emulator (data/benches/tron_emulated.toml): the laboratory, hidden errors, clock, camera.
 // Neither driver nor calibration reads it.
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct CameraIdentity {
   std::string serial;  ///< empty: drawn from the seed
 };
 
-/// The sensor of the camera in front of the bench.
+/// Describes the sensor of the emulated camera.
 struct SensorSettings {
   double gain_dn_per_electron = 0.125;
   double read_noise_electrons = 7.0;
@@ -46,12 +46,12 @@ struct BenchSettings {
   std::vector<Fault> faults;
 };
 
-/// The file with `assignments` (key=value) in place of its values; "laboratory.<key>=value" is one of the laboratory.
-/// Throws mission::MissionError.
+/// Reads the file with `assignments` (key=value) in place of its values; "laboratory.<key>=value" is one of the
+/// laboratory. Throws mission::MissionError.
 [[nodiscard]] BenchSettings read_bench(const std::filesystem::path& file, const std::vector<std::string>& assignments);
 
-/// Lens and detector as they really are: those of the camera's file with the errors of the bench. The region is the
-/// whole detector.
+/// Returns lens and detector as they really are: those of the camera's file with the errors of the emulator. The region
+/// is the whole detector.
 [[nodiscard]] twins::camera::CameraSettings true_camera(const BenchSettings& settings,
                                                         const std::filesystem::path& data_directory);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What motion capture can track at a posture: markers on camera and mock-up, hidden by arms and bodies.
+// Objects that motion capture can track at a posture: markers on camera and mock-up, hidden by arms and bodies.
 
 #include <array>
 #include <cstddef>
@@ -20,11 +20,11 @@ class CaptureView {
  public:
   CaptureView(const BenchFile& laboratory, const World& world);
 
-  /// Markers located, of camera and target.
+  /// Returns the number of markers located, of camera and target.
   [[nodiscard]] std::array<std::size_t, kCaptureObjects> located(const Posture& posture) const;
-  /// Links of both, where they really are.
+  /// Returns the links of both arms, where they really are.
   [[nodiscard]] std::vector<Capsule> arms(const Posture& posture) const;
-  /// True pose of the camera, or of the plate's mock-up whatever hangs there; nothing if it is not tracked.
+  /// Returns the true pose of the camera, or of the plate's mock-up whatever hangs there; nothing if it is not tracked.
   [[nodiscard]] std::optional<Eigen::Isometry3d> tracked(CaptureObject object, const Posture& posture) const;
 
  private:

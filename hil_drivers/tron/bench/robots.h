@@ -17,7 +17,7 @@
 
 namespace vbar::tron::bench {
 
-/// Ports of the driver; 0: as the laboratory file says.
+/// Holds the ports of the driver; 0: as the laboratory file states.
 struct DriverPorts {
   std::uint16_t camera_rsi = 0, target_rsi = 0, vicon = 0;
 };
@@ -27,19 +27,19 @@ class Robots {
   /// Throws std::runtime_error, mission::MissionError.
   Robots(boost::asio::io_context& context, const BenchSettings& settings, const World& world, const DriverPorts& ports);
 
-  /// Where the axes really are.
+  /// Returns the posture where the axes really are.
   [[nodiscard]] Posture true_posture() const;
-  /// As the motors measure it.
+  /// Returns the posture as the motors measure it.
   [[nodiscard]] Posture measured_posture() const;
 
   [[nodiscard]] const Controller& of_camera() const { return *camera_; }
   [[nodiscard]] const Controller& of_target() const { return *target_; }
   [[nodiscard]] std::vector<Controller*> both() { return {camera_.get(), target_.get()}; }
 
-  /// False for a fault that is not one of a robot.
+  /// Returns false for a fault that is not one of a robot.
   bool set_fault(const Fault& fault, bool is_on);
 
-  /// What each has counted.
+  /// Returns the counters of each robot.
   [[nodiscard]] nlohmann::ordered_json summary() const;
 
  private:

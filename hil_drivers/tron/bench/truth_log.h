@@ -1,5 +1,5 @@
 #pragma once
-// What was really there at each exposure: a table for the evaluation, which the driver does not read.
+// Truth at each exposure: a table for the evaluation, which the driver does not read.
 
 #include <array>
 #include <cstdint>
@@ -31,7 +31,7 @@ class TruthLog {
  public:
   /// Throws std::runtime_error if the file cannot be made.
   explicit TruthLog(const std::filesystem::path& file);
-  /// Written at once, since the program may be killed.
+  /// Writes at once, since the program may be killed.
   void write(const TrueExposure& exposure);
 
  private:

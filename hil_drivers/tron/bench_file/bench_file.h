@@ -1,7 +1,7 @@
 #pragma once
 // The laboratory as designed: two arms, track, mounts, lamp, light boxes, camera, motion capture, addresses and limits
-// (data/benches/tron.toml, where each number has its source). What a bench really is differs from it by the errors that
-// calibration finds.
+// (data/benches/tron.toml, where each number has its source). What a testbed really is differs from it by the errors
+// that calibration finds.
 //
 // Laboratory frame L: x along the track, z up, origin on the floor in a corner of the end wall, y = 0 in the middle.
 // T_A_B (Eigen::Isometry3d) takes coordinates in B to coordinates in A.
@@ -28,11 +28,11 @@ struct AxisLimits {
   double jerk = 0.0;                ///< rad/s3 (m/s3)
 };
 
-/// An arm of six axes with a spherical wrist, of KUKA's kind. At zero angles it is stretched along base x, and the
-/// frames of all links are parallel to the base's. A1 turns about -z at height d1; A2 about +y, a1 before A1; A3 about
-/// +y, a2 along the upper arm; A4 about -x, a3 above A3; A5 about +y and A6 about -x at the wrist, d4 along the
-/// forearm; the flange is d6 from the wrist. Flange frame: z away from the wrist, x down at zero angles (R_base_flange
-/// = [0 0 1; 0 1 0; -1 0 0], rotation of 90 deg about y).
+/// Describes an arm of six axes with a spherical wrist, of KUKA's kind. At zero angles it is stretched along base x,
+/// and the frames of all links are parallel to the base's. A1 turns about -z at height d1; A2 about +y, a1 before A1;
+/// A3 about +y, a2 along the upper arm; A4 about -x, a3 above A3; A5 about +y and A6 about -x at the wrist, d4 along
+/// the forearm; the flange is d6 from the wrist. Flange frame: z away from the wrist, x down at zero angles
+/// (R_base_flange = [0 0 1; 0 1 0; -1 0 0], rotation of 90 deg about y).
 struct ArmDesign {
   std::string type;  ///< designation of the manufacturer
   double d1_m = 0.0, a1_m = 0.0, a2_m = 0.0, a3_m = 0.0, d4_m = 0.0, d6_m = 0.0;
@@ -42,7 +42,7 @@ struct ArmDesign {
   std::array<double, 4> body_radius_m{};
 };
 
-/// How an arm stands.
+/// Holds the place and rotation of an arm's base.
 struct BasePose {
   fsw::Vector3 position_m =
       fsw::Vector3::Zero();  ///< place of the base, L; for the arm on the track, with the carriage at 0
@@ -50,7 +50,7 @@ struct BasePose {
   [[nodiscard]] Eigen::Isometry3d T_L_base() const;
 };
 
-/// The face of the target by which the flange holds it; the flange's z goes into the body through it.
+/// Names the face of the target by which the flange holds it; the flange's z goes into the body through it.
 enum class MountFace { kMinusX, kPlusX, kMinusY, kPlusY, kBottom, kTop };
 
 struct TargetMount {
@@ -60,7 +60,7 @@ struct TargetMount {
   double roll_rad = 0.0;       ///< rotation of the body about the flange's z
   double rod_radius_m = 0.03;  ///< radius of the rod between them
   fsw::Vector3 body_low_m = fsw::Vector3::Zero(), body_high_m = fsw::Vector3::Zero();  ///< box of the hull, full scale
-  /// Full-scale body frame scaled by `scale`; the origin of T is the scaled origin of the body frame.
+  /// Returns the full-scale body frame scaled by `scale`; the origin of T is the scaled origin of the body frame.
   [[nodiscard]] Eigen::Isometry3d T_flange_target(double scale) const;
 };
 
@@ -73,7 +73,7 @@ struct CameraMount {
   [[nodiscard]] Eigen::Isometry3d T_flange_camera() const;
 };
 
-/// The lamp rides on a horizontal arc about `centre`. Azimuth from -x towards -y.
+/// Describes the lamp, which rides on a horizontal arc about `centre`. Azimuth from -x towards -y.
 struct Lamp {
   fsw::Vector3 centre_m = fsw::Vector3::Zero();
   double radius_m = 1.3;
@@ -81,7 +81,7 @@ struct Lamp {
   double speed_rad_s = 0.0;
   double beam_width_m = 1.1;
   double irradiance_ratio = 0.0;  ///< at full power in the middle of the beam, to the solar constant
-  /// Unit vector from the centre to the lamp, L: (-cos b, -sin b, 0).
+  /// Returns the unit vector from the centre to the lamp, L: (-cos b, -sin b, 0).
   [[nodiscard]] static fsw::Vector3 direction(double azimuth_rad);
 };
 
@@ -92,7 +92,7 @@ struct LightBox {
 
 struct LightBoxes {
   double side_m = 0.6;
-  /// Radiance at full power times pi, to the lamp's irradiance at full power: radiant exitance ratio.
+  /// Radiant exitance ratio: radiance at full power times pi, relative to the lamp's irradiance at full power.
   double exitance_ratio = 0.0;
   std::array<LightBox, kBoxes> boxes{};
 };

@@ -17,7 +17,7 @@ inline constexpr int kLinkErrors = 5;  ///< after each of A1..A5
 inline constexpr int kFlexes = 2;      ///< A2 and A3 bend
 inline constexpr int kTrackErrors = 5;
 
-/// Lengths of an arm as designed, m; the names are those of ArmDesign.
+/// Holds the lengths of an arm as designed, m; the names are those of ArmDesign.
 struct ArmLengths {
   double d1_m = 0.0, a1_m = 0.0, a2_m = 0.0, a3_m = 0.0, d4_m = 0.0, d6_m = 0.0;
   static ArmLengths of(const ArmDesign& design) {
@@ -25,7 +25,7 @@ struct ArmLengths {
   }
 };
 
-/// Rotation by a rotation vector, rad; smooth at zero.
+/// Returns the rotation by a rotation vector, rad; smooth at zero.
 template <typename T>
 Eigen::Matrix<T, 3, 3> rotation_of(const Eigen::Matrix<T, 3, 1>& vector) {
   using std::cos, std::sin, std::sqrt;
@@ -44,7 +44,7 @@ Eigen::Matrix<T, 3, 3> rotation_of(const Eigen::Matrix<T, 3, 1>& vector) {
   return Eigen::Matrix<T, 3, 3>::Identity() + a * cross + b * cross * cross;
 }
 
-/// Six numbers: rotation vector, rad, then translation, m.
+/// Returns the transform of six numbers: rotation vector, rad, then translation, m.
 template <typename T>
 Rigid<T> rigid_of(const T* six) {
   Rigid<T> result = Rigid<T>::Identity();
@@ -64,8 +64,8 @@ void shift(Rigid<T>& chain, double x, double z) {
   chain.translation() += chain.linear() * Eigen::Matrix<T, 3, 1>(T(x), T(0.0), T(z));
 }
 
-/// Parameters of one arm: joint offsets (6, rad), errors after A1..A5 (6 each: rad, m), flexes of A2 and A3 (rad per m
-/// of horizontal lever).
+/// Holds the parameters of one arm: joint offsets (6, rad), errors after A1..A5 (6 each: rad, m), flexes of A2 and A3
+/// (rad per m of horizontal lever).
 template <typename T>
 struct ArmErrors {
   const T* offset_rad;
@@ -73,9 +73,9 @@ struct ArmErrors {
   const T* flex_rad_m;
 };
 
-/// T_base_flange at the joint angles that the controller states. `gravity`: +1 of an arm that stands on the floor, -1
-/// of one that hangs. The lever of A2 and A3 is the horizontal distance of the wrist from the joint; an arm that stands
-/// turns forward under its weight (about +y), one that hangs turns back.
+/// Returns T_base_flange at the joint angles that the controller states. `gravity`: +1 of an arm that stands on the
+/// floor, -1 of one that hangs. The lever of A2 and A3 is the horizontal distance of the wrist from the joint; an arm
+/// that stands turns forward under its weight (about +y), one that hangs turns back.
 template <typename T>
 Rigid<T> T_base_flange(const ArmLengths& arm, const double* joints_rad, double gravity, const ArmErrors<T>& errors) {
   using std::cos, std::sin;
@@ -112,7 +112,7 @@ Rigid<T> T_base_flange(const ArmLengths& arm, const double* joints_rad, double g
   return chain;
 }
 
-/// Places of the control points of the track's errors: uniform cubic B-splines.
+/// Holds the places of the control points of the track's errors: uniform cubic B-splines.
 struct TrackGrid {
   double first_m = 0.0;  ///< carriage place of the first control point
   double step_m = 1.0;
@@ -120,8 +120,8 @@ struct TrackGrid {
   double plate_m = 0.0;   ///< height of the plate by which the arm hangs: the errors of rotation turn about it
 };
 
-/// T_L_carriage: translation along x by the carriage, its scale error and the five errors of the track: roll, pitch,
-/// yaw, rad, sideways, height, m. `knots`: five numbers a control point.
+/// Returns T_L_carriage: translation along x by the carriage, its scale error and the five errors of the track: roll,
+/// pitch, yaw, rad, sideways, height, m. `knots`: five numbers a control point.
 template <typename T>
 Rigid<T> T_L_carriage(const TrackGrid& grid, double carriage_m, const T* knots, int count, const T& scale) {
   const double place = (carriage_m - grid.first_m) / grid.step_m;

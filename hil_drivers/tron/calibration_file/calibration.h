@@ -1,5 +1,5 @@
 #pragma once
-// The result of a calibration of TRON: what `vbar_tron calibrate` writes and the driver reads.
+// Result of a calibration of TRON: `vbar_tron calibrate` writes the file, and the driver reads it.
 //
 // Frames as in bench_file.h. C camera, T target, V frame of motion capture, OC and OT its objects on camera and target.
 
@@ -21,7 +21,7 @@ namespace vbar::tron {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-/// A pose as the file has it.
+/// Holds a pose as the file has it.
 struct PoseFigures {
   std::array<double, 3> rotation_rad{};  ///< rotation vector
   std::array<double, 3> translation_m{};
@@ -29,7 +29,7 @@ struct PoseFigures {
   static PoseFigures of(const Eigen::Isometry3d& pose);
 };
 
-/// Where and with what the calibration was made.
+/// States where and with which devices the calibration was made.
 struct CalibrationValidity {
   std::string date_utc;  ///< ISO 8601
   std::string bench;     ///< name of the bench file
@@ -44,7 +44,7 @@ struct LensCalibration {
   double fx_px = 0.0, fy_px = 0.0, cx_px = 0.0, cy_px = 0.0;  ///< an integer is the centre of a pixel
   std::array<double, 5> distortion{};  ///< Brown-Conrady k1, k2, p1, p2, k3, as OpenCV orders them
 
-  /// Pixel of a point in C, m.
+  /// Returns the pixel of a point in C, m.
   [[nodiscard]] fsw::Vector2 project(const fsw::Vector3& point_C) const;
 };
 
@@ -70,13 +70,13 @@ struct ViconCalibration {
   PoseFigures T_V_L;             ///< laboratory frame in the frame of motion capture
 };
 
-/// Covariance of an error of T_C_T in the camera's axes: rotation vector, rad (R_true = exp(error) R), and translation
-/// divided by the range.
+/// Holds the covariance of an error of T_C_T in the camera's axes: rotation vector, rad (R_true = exp(error) R), and
+/// translation divided by the range.
 struct SourceCovariances {
   Matrix6 arms = Matrix6::Zero(), vicon = Matrix6::Zero();
 };
 
-/// Light of a source at levels of its DMX value (share of 65535), relative to that at full power.
+/// Holds the light of a source at levels of its DMX value (share of 65535), relative to that at full power.
 struct LightTable {
   std::string source;  ///< "lamp", "box 1" .. "box 10"
   std::vector<double> level, light;
@@ -90,7 +90,7 @@ struct CameraCalibration {
   double lamp_dn_per_s = 0.0;
 };
 
-/// Errors of a source over the poses that were not fitted.
+/// Holds the errors of a source over the poses that were not fitted.
 struct ErrorFigures {
   double translation_mean_mm = 0.0, translation_sigma_mm = 0.0, translation_median_mm = 0.0;
   double rotation_mean_deg = 0.0, rotation_sigma_deg = 0.0, rotation_median_deg = 0.0;
@@ -116,27 +116,27 @@ struct Calibration {
   std::vector<StageFigures> figures;
 };
 
-/// As designed, without any error: what a fit begins with.
+/// Returns the calibration as designed, without any error: the start of a fit.
 [[nodiscard]] Calibration calibration_as_designed(const BenchFile& bench);
 
-/// Laboratory poses by the calibrated chain.
+/// Returns laboratory poses by the calibrated chain.
 [[nodiscard]] Eigen::Isometry3d T_L_C_of_arm(const Calibration& calibration, const Posture& posture);
 [[nodiscard]] Eigen::Isometry3d T_L_T_of_arm(const Calibration& calibration, const Posture& posture);
-/// Relative pose by the arms.
+/// Returns the relative pose by the arms.
 [[nodiscard]] Eigen::Isometry3d T_C_T_of_arms(const Calibration& calibration, const Posture& posture);
-/// Relative pose by motion capture, from the poses of its two objects in its frame.
+/// Returns the relative pose by motion capture, from the poses of its two objects in its frame.
 [[nodiscard]] Eigen::Isometry3d T_C_T_of_vicon(const Calibration& calibration, const Eigen::Isometry3d& T_V_camera,
                                                const Eigen::Isometry3d& T_V_target);
 
-/// Covariance of SourceCovariances at the pose T_C_T, as fusion takes it: of the vector [rotation, rad; translation, m]
-/// in the axes of T with T_true = T_C_T exp(vector).
+/// Returns the covariance of SourceCovariances at the pose T_C_T, as fusion takes it: of the vector [rotation, rad;
+/// translation, m] in the axes of T with T_true = T_C_T exp(vector).
 [[nodiscard]] Matrix6 covariance_at(const Matrix6& covariance_camera, const Eigen::Isometry3d& T_C_T);
 
 /// Throws a MissionError that names the file and the key if the file is missing, damaged or not a calibration.
 [[nodiscard]] Calibration load_calibration(const std::filesystem::path& file);
 [[nodiscard]] Calibration parse_calibration(std::string_view text, const std::string& file);
 
-/// TOML; the shortest decimal numbers that read back as the same bits.
+/// Returns TOML; the shortest decimal numbers that read back as the same bits.
 [[nodiscard]] std::string toml_of(const Calibration& calibration);
 /// Replaces the file as a whole.
 void save_calibration(const Calibration& calibration, const std::filesystem::path& file);

@@ -7,7 +7,7 @@
 
 namespace vbar::tron {
 
-/// Pixel of a point in camera axes; `focal_centre`: fx, fy, cx, cy; `distortion`: k1, k2, p1, p2, k3.
+/// Returns the pixel of a point in camera axes; `focal_centre`: fx, fy, cx, cy; `distortion`: k1, k2, p1, p2, k3.
 template <typename T>
 Eigen::Matrix<T, 2, 1> project_point(const std::array<T, 4>& focal_centre, const T* distortion,
                                      const Eigen::Matrix<T, 3, 1>& point) {

@@ -1,5 +1,5 @@
 #pragma once
-// Bodies of a bench at a posture: whether they are apart, and what they hide from the camera.
+// Bodies of a testbed at a posture: their clearance, and what they hide from the camera.
 
 #include <array>
 #include <cstdint>
@@ -41,14 +41,14 @@ class BenchBodies {
 
   [[nodiscard]] Bodies at(const Posture& posture) const;
 
-  /// Which two are closer than the clearance, "target and forearm of the target's arm"; empty: none. The room counts,
-  /// and so do bodies of one arm that are not neighbours. A posture that is not finite is a collision.
+  /// Names the two bodies that are closer than the clearance, "target and forearm of the target's arm"; empty: none.
+  /// The room counts, and so do bodies of one arm that are not neighbours. A posture that is not finite is a collision.
   [[nodiscard]] std::string collision(const Bodies& bodies) const { return collision(bodies, clearance_m()); }
   [[nodiscard]] std::string collision(const Bodies& bodies, double clearance_m) const;
   [[nodiscard]] double clearance_m() const { return bench_.motion.clearance_m; }
 
   [[nodiscard]] bool is_free(const Bodies& bodies) const { return collision(bodies).empty(); }
-  // The same in parts, for a search: each arm by itself, the target as held, and both together.
+  // Returns the bodies in parts, for a search: each arm by itself, the target as held, and both together.
   [[nodiscard]] ArmCapsules camera_arm_at(const Joints& joints_rad, double carriage_m) const;
   [[nodiscard]] ArmCapsules target_arm_at(const Joints& joints_rad) const;
   [[nodiscard]] OrientedBox hull_at(const Eigen::Isometry3d& T_L_T) const;
@@ -57,33 +57,33 @@ class BenchBodies {
   [[nodiscard]] bool are_apart(const ArmCapsules& camera_arm, const ArmCapsules& target_arm,
                                const OrientedBox& hull) const;
 
-  /// Which two are closer than the clearance anywhere on the straight path in joint space, sampled so that no body
-  /// moves by more than `step_m` between two samples; empty: none.
+  /// Names the two bodies that are closer than the clearance anywhere on the straight path in joint space, sampled so
+  /// that no body moves by more than `step_m` between two samples; empty: none.
   [[nodiscard]] std::string collision_between(const Posture& from, const Posture& to, double clearance_m,
                                               double step_m = 0.01) const;
 
-  /// How many of the points, full-scale body frame, an arm or the rod hides from the camera.
+  /// Returns the number of points, full-scale body frame, that an arm or the rod hides from the camera.
   [[nodiscard]] int hidden(const Bodies& bodies, std::span<const fsw::Vector3> points_body) const;
 
-  /// One bit a point, L: hidden by the camera's arm (which looks ahead of its own wrist), by the target's arm.
+  /// Returns one bit a point, L: hidden by the camera's arm (which looks ahead of its own wrist), by the target's arm.
   [[nodiscard]] static std::uint32_t hidden_by_camera_arm(const ArmCapsules& arm, const fsw::Vector3& eye,
                                                           std::span<const fsw::Vector3> points_L);
   [[nodiscard]] static std::uint32_t hidden_by_target_arm(const ArmCapsules& arm, const fsw::Vector3& eye,
                                                           std::span<const fsw::Vector3> points_L);
-  /// One bit a point, L: whether an arm's shadow falls on it. Its light comes from the lamp in direction
+  /// Returns one bit a point, L: set if an arm's shadow falls on the point. Its light comes from the lamp in direction
   /// `towards_lamp`.
   [[nodiscard]] std::uint32_t shaded_by(const ArmCapsules& arm, const fsw::Vector3& towards_lamp,
                                         std::span<const fsw::Vector3> points_L) const;
-  /// Four points of each face of the hull that the lamp lights, L.
+  /// Returns four points of each face of the hull that the lamp lights, L.
   [[nodiscard]] static std::vector<fsw::Vector3> lit_points(const OrientedBox& hull, const fsw::Vector3& towards_lamp);
-  /// From the full-scale body frame; at most 32.
+  /// Converts points from the full-scale body frame; at most 32.
   [[nodiscard]] std::vector<fsw::Vector3> points_at(const Eigen::Isometry3d& T_L_T,
                                                     std::span<const fsw::Vector3> points_body) const;
 
-  /// How many of the lit points of the hull are in the shadow of an arm.
+  /// Returns the number of lit points of the hull that are in the shadow of an arm.
   [[nodiscard]] int shaded(const Bodies& bodies, const fsw::Vector3& towards_lamp) const;
 
-  /// Keypoints of the target's model and the middle of its hull, full-scale body frame.
+  /// Returns keypoints of the target's model and the middle of its hull, full-scale body frame.
   [[nodiscard]] std::vector<fsw::Vector3> points_to_see(const std::filesystem::path& data_directory) const;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// What the exchange of a scene for an image needs of the bench and of its planning.
+// Interfaces of devices and planning to the exchange of a scene for an image.
 
 #include <array>
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace vbar::tron {
 
-/// Where both arms, the carriage and the lamp shall be.
+/// Holds the commanded posture and the lamp's place.
 struct Place {
   Posture posture;
   double lamp_azimuth_rad = 0.0;
@@ -23,7 +23,7 @@ struct Place {
   int shaded = 0;              ///< lit points of the hull, four a face, in the shadow of an arm
 };
 
-/// Why there is none, one sentence.
+/// States why there is no placement or path, one sentence.
 struct NoPlace {
   std::string reason;
 };
@@ -37,13 +37,13 @@ class MotionPlanner {
 
   [[nodiscard]] virtual std::variant<Place, NoPlace> place(const Scene& scene, const Posture& from,
                                                            std::int64_t image) = 0;
-  /// Free of collisions; nothing to move: a motion of no cycles.
+  /// Returns a path free of collisions; if there is nothing to move, a motion of no cycles.
   [[nodiscard]] virtual std::variant<Motion, NoPlace> path(const Posture& from, const Posture& to) = 0;
-  /// The posture near `from` whose relative pose by the calibrated arms is `T_C_T`.
+  /// Returns the posture near `from` whose relative pose by the calibrated arms is `T_C_T`.
   [[nodiscard]] virtual std::optional<Posture> corrected(const Posture& from, const Eigen::Isometry3d& T_C_T) = 0;
 };
 
-/// Powers from 0 to 1, of light, not of the DMX value.
+/// Holds powers from 0 to 1, of light, not of the DMX value.
 struct LightLevels {
   double lamp_power = 0.0;
   double lamp_azimuth_rad = 0.0;
@@ -61,7 +61,7 @@ class LightPlanner {
   [[nodiscard]] virtual LightLevels levels(const Scene& scene, const Place& place) = 0;
 };
 
-/// Poses of the objects of motion capture in its frame, averaged at rest.
+/// Holds poses of the objects of motion capture in its frame, averaged at rest.
 struct CapturedPoses {
   Eigen::Isometry3d T_V_camera = Eigen::Isometry3d::Identity(), T_V_target = Eigen::Isometry3d::Identity();
 };
@@ -77,8 +77,8 @@ struct BenchFrame {
   int tries = 1;
 };
 
-/// The devices of a bench. All functions throw std::runtime_error, one sentence that names the device, if the bench
-/// cannot go on.
+/// Gives access to the devices of a testbed. All functions throw std::runtime_error, one sentence that names the
+/// device, if the testbed cannot go on.
 class Laboratory {
  public:
   Laboratory() = default;
@@ -89,11 +89,11 @@ class Laboratory {
   [[nodiscard]] virtual Posture posture() = 0;
   virtual MotionEnd follow(const Motion& motion) = 0;
   virtual MotionEnd hold(double bench_s) = 0;
-  /// After kInterrupted.
+  /// Recovers the robots after kInterrupted.
   virtual void recover() = 0;
-  /// Arms and motion capture, at rest.
+  /// Measures the poses by arms and motion capture, at rest.
   virtual std::variant<MeasuredPlace, MotionEnd> measure() = 0;
-  /// Sends; hold() until they are there.
+  /// Sends the levels; hold() until they act.
   virtual void light(const LightLevels& levels) = 0;
   virtual BenchFrame take(double exposure_s) = 0;
   [[nodiscard]] virtual double time_s() const = 0;  ///< bench time

@@ -34,10 +34,10 @@ class ImageExchange {
                 LightPlanner& lights, Laboratory& laboratory)
       : settings_(settings), calibration_(calibration), motion_(motion), lights_(lights), laboratory_(laboratory) {}
 
-  /// Fills the parts of the row that it knows. Throws std::runtime_error if the bench cannot go on.
+  /// Takes an image and fills its parts of the row. Throws std::runtime_error if the testbed cannot go on.
   SceneImage take(const Scene& scene, std::int64_t number, double exposure_s, TronRow& row);
 
-  /// All lights off; the arms stay.
+  /// Takes an image with all lights off; the arms stay.
   BenchFrame take_dark(double exposure_s);
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-// Where the devices of a bench are: of an emulated one as it says in addresses.json, of a laboratory as its bench file
-// says.
+// Addresses of the devices of a testbed: an emulator writes them to addresses.json, a real testbed has them in its
+// bench file.
 
 #include <cstdint>
 #include <filesystem>
@@ -16,17 +16,17 @@ struct TcpAddress {
 };
 
 struct BenchAddresses {
-  bool is_virtual = false;                ///< the clock of an emulated bench
+  bool is_virtual = false;                ///< the clock of an emulator
   std::string camera;                     ///< IP address
   TcpAddress camera_robot, target_robot;  ///< Ethernet KRL
   TcpAddress lights;                      ///< sACN, UDP
-  std::filesystem::path control;          ///< socket of an emulated bench; empty: none
+  std::filesystem::path control;          ///< socket of an emulator; empty: none
 };
 
 [[nodiscard]] BenchAddresses addresses_of(const BenchFile& bench);
 /// Throws std::runtime_error that names the file.
 [[nodiscard]] BenchAddresses read_addresses(const std::filesystem::path& file);
-/// "host:port"; throws std::runtime_error.
+/// Parses "host:port"; throws std::runtime_error.
 [[nodiscard]] TcpAddress parse_address(const std::string& text);
 
 }  // namespace vbar::tron

@@ -174,7 +174,7 @@ struct RobotPair::Parts {
     if (state.rsi_on) state = robot.eki->stop();
     if (is_stopped(state) && (state.stopped || !state.drives_powered)) state = robot.eki->reset();
     state = robot.eki->start();
-    // Refused while the axes still move, to the end of a stop.
+    // Rejected while the axes still move, to the end of a stop.
     for (int k = 0; k < kStartTries && !state.rsi_on; ++k) {
       let_time_pass();
       state = robot.eki->start();

@@ -1,6 +1,6 @@
 #pragma once
 // Both robots, driven cycle by cycle through RSI, their states through Ethernet KRL. There is no wall clock in the
-// control path: a cycle lasts from the answers to the next states. With the virtual clock of an emulated bench time
+// control path: a cycle lasts from the answers to the next states. With the virtual clock of an emulator time
 // stands still between the calls; with a real one a thread holds the arms where they are.
 
 #include <chrono>
@@ -20,7 +20,7 @@ struct RobotPairSettings {
   rsi::ClientSettings camera_rsi, target_rsi;
   eki::ClientSettings camera_eki, target_eki;  ///< host and port may be set later, before open()
   double track_home_m = 0.0;
-  bool is_virtual = true;                           ///< the clock of the bench
+  bool is_virtual = true;                           ///< the clock of the testbed
   std::chrono::milliseconds start_patience{5000};   ///< wall clock, for the first state after RSI was started
   std::chrono::milliseconds silence_patience{500};  ///< silence in a cycle; virtual clock: 20 times as much
   double settle_limit_s = 5.0;                      ///< bench time
@@ -53,22 +53,22 @@ class RobotPair {
   /// Ends RSI and closes the lines.
   void close() noexcept;
 
-  /// As the controllers stated in the last cycle.
+  /// Returns the posture as the controllers stated it in the last cycle.
   [[nodiscard]] Posture posture() const;
-  /// As commanded last.
+  /// Returns the posture that was commanded last.
   [[nodiscard]] Posture command() const;
 
   /// Follows the motion and waits until the arms have settled. Throws std::runtime_error if they do not settle.
   MotionEnd follow(const Motion& motion);
   /// Holds the arms for a number of cycles.
   MotionEnd hold(int cycles);
-  /// After kInterrupted: waits until emergency stops are cleared, resets and starts what has stopped. `report` gets a
-  /// sentence for the operator. Throws std::runtime_error after the operator's time-out.
+  /// Recovers after kInterrupted: after kInterrupted: waits until emergency stops are cleared, resets and starts what
+  /// has stopped. `report` gets a sentence for the operator. Throws std::runtime_error after the operator's time-out.
   void recover(const std::function<void(const std::string&)>& report);
-  /// At rest, through Ethernet KRL.
+  /// Returns the posture at rest, through Ethernet KRL.
   [[nodiscard]] Posture rest_posture();
 
-  /// From another thread: calls return kInterrupted or throw without delay, and wait for nothing.
+  /// Cancels from another thread: calls return kInterrupted or throw without delay, and wait for nothing.
   void cancel() noexcept;
 
   [[nodiscard]] double time_s() const;  ///< bench time since open(), 4 ms a cycle

@@ -101,7 +101,7 @@ struct WiredLaboratory::Parts {
     return result;
   }
 
-  /// A receiver forgets a source that it has not heard for 2.5 s.
+  /// Keeps the source alive: a receiver drops a source that it has not heard for 2.5 s.
   void keep_lights(std::uint64_t cycles) {
     constexpr auto kEvery = static_cast<std::uint64_t>(sacn::Sender::kKeepAliveSeconds / rsi::kCycle_s);
     if (cycles % kEvery != 0) return;

@@ -1,5 +1,5 @@
 #pragma once
-// All devices of a bench over their wires.
+// All devices of a testbed over their wires.
 
 #include <chrono>
 #include <functional>
@@ -35,13 +35,13 @@ class WiredLaboratory final : public Laboratory {
   explicit WiredLaboratory(const DeviceSettings& settings);
   ~WiredLaboratory() override;
 
-  /// Options for the command line of an emulated bench: the ports of this computer.
+  /// Returns options for the command line of an emulator: the ports of this computer.
   [[nodiscard]] std::string port_options() const;
 
   /// Opens robots, lights and camera. Throws std::runtime_error.
   void open(const BenchAddresses& addresses);
   void close() noexcept;
-  /// From another thread: what waits returns or throws.
+  /// Stops from another thread: calls that wait return or throw.
   void stop() noexcept;
 
   [[nodiscard]] Posture posture() override;
@@ -53,17 +53,17 @@ class WiredLaboratory final : public Laboratory {
   BenchFrame take(double exposure_s) override;
   [[nodiscard]] double time_s() const override;
 
-  /// Raw values, for calibration: lamp power, place, boxes.
+  /// Sends raw values, for calibration: lamp power, place, boxes.
   void light_values(const std::array<std::uint16_t, 2 + kBoxes>& values);
-  /// From light to DMX values; by default proportional.
+  /// Sets the conversion from light to DMX values; by default proportional.
   void set_light_values(std::function<std::array<std::uint16_t, 2 + kBoxes>(const LightLevels&)> values);
 
-  /// Vendor, model, serial number.
+  /// Returns vendor, model, serial number.
   [[nodiscard]] std::string camera() const;
   [[nodiscard]] std::string camera_model() const;
   [[nodiscard]] std::string camera_serial() const;
   [[nodiscard]] bool camera_is_emulated() const;
-  /// Counters of the devices, by name.
+  /// Returns counters of the devices, by name.
   [[nodiscard]] std::map<std::string, double> counts() const;
 
  private:

@@ -25,10 +25,10 @@ struct DarkLevel {
 /// Throws std::invalid_argument for fewer than 100 pixels.
 [[nodiscard]] DarkLevel dark_level(std::span<const std::uint16_t> dn);
 
-/// 1 where a pixel of which anything is covered lies within `radius_px`, rows of `width`.
+/// Returns 1 for each pixel within `radius_px` of which anything is covered, rows of `width`.
 [[nodiscard]] std::vector<std::uint8_t> grown(std::span<const float> covered, int width, int radius_px);
 
-/// Where the target is in an image, in rows of `width`.
+/// Describes where the target is in an image, in rows of `width`.
 struct Outline {
   static constexpr int kMargin_px = 1;  ///< margin for blur and for the error of the measured pose
 
@@ -37,12 +37,12 @@ struct Outline {
   std::vector<std::uint8_t> mask;  ///< 1: of the target or of the margin around it
 };
 
-/// `T_C_B`: body at full scale in camera axes. Blurs what is covered by a Gaussian of 0.7 px, about that of lens and
-/// pixel.
+/// Returns the outline of the body at pose `T_C_B`: full scale, in camera axes. Blurs what is covered by a Gaussian of
+/// 0.7 px, about that of lens and pixel.
 [[nodiscard]] Outline outline_of(twins::camera::Silhouette& silhouette, const twins::camera::Projection& lens,
                                  const Eigen::Isometry3d& T_C_B, const twins::camera::Region& region);
 
-/// Subtracts from each pixel of the margin what of its light is not the target's: the uncovered fraction times the mean
+/// Subtracts from each pixel of the margin the light that is not the target's: the uncovered fraction times the mean
 /// of the background near it.
 void subtract_background(const Outline& outline, const DarkLevel& dark, std::span<std::uint16_t> dn);
 

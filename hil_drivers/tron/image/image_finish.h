@@ -1,5 +1,5 @@
 #pragma once
-// From a frame of the bench to the image that a camera in orbit would deliver, and what its light says of the lamps.
+// From a frame of the testbed to the image that a camera in orbit would deliver, and what its light says of the lamps.
 
 #include <cstdint>
 #include <optional>
@@ -23,12 +23,12 @@ struct FinishedImage {
 
 class ImageFinish {
  public:
-  /// `camera`: as calibrated, binned by two as the image. `dark`: a frame of single pixels without light. `key`: of the
-  /// noise.
+  /// Takes `camera` as calibrated, binned by two as the image. `dark`: a frame of single pixels without light. `key`:
+  /// key of the noise.
   ImageFinish(const twins::camera::CameraSettings& camera, const twins::camera::CadModel& model,
               const std::vector<std::uint16_t>& dark, std::uint64_t key);
 
-  /// `frame`: single pixels. `T_C_B`: body at full scale as measured.
+  /// Finishes `frame` of single pixels. `T_C_B`: body at full scale as measured.
   [[nodiscard]] FinishedImage finish(const std::vector<std::uint16_t>& frame, std::int64_t image,
                                      const Eigen::Isometry3d& T_C_B, const std::optional<TargetLight>& light);
 

@@ -14,7 +14,7 @@
 
 namespace vbar::tron {
 
-/// The light on a target in orbit.
+/// Holds the light on a target in orbit.
 struct TargetLight {
   fsw::Vector3 sun_C = fsw::Vector3::UnitZ();  ///< unit
   double sun_photons_per_m2_s = 0.0;           ///< that reach it
@@ -23,12 +23,12 @@ struct TargetLight {
   double earth_half_angle = 1.1;  ///< rad
 };
 
-/// Light of the CAD model's surfaces towards the camera, which the mock-up's resemble.
+/// Predicts the light of the CAD model's surfaces towards the camera, which the mock-up's resemble.
 class ExpectedLight {
  public:
   explicit ExpectedLight(const twins::camera::CadModel& model) : renderer_(model) {}
 
-  /// Photo-electrons in an image of `camera`; `T_C_B`: body at full scale in camera axes.
+  /// Returns photo-electrons in an image of `camera`; `T_C_B`: body at full scale in camera axes.
   [[nodiscard]] double electrons(const Eigen::Isometry3d& T_C_B, const TargetLight& light,
                                  const twins::camera::CameraSettings& camera);
 
@@ -37,7 +37,7 @@ class ExpectedLight {
   std::vector<twins::camera::LightSample> samples_;
 };
 
-/// Photo-electrons of the pixels where `mask` is 1.
+/// Returns photo-electrons of the pixels where `mask` is 1.
 [[nodiscard]] double measured_electrons(std::span<const std::uint16_t> dn, std::span<const std::uint8_t> mask,
                                         double offset_dn, double gain_dn_per_electron);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Where both arms and the carriage stand, and how they move.
+// Places of both arms and the carriage, and their motions.
 
 #include <cmath>
 #include <functional>
@@ -19,7 +19,7 @@ struct Posture {
   return posture.camera_rad.allFinite() && posture.target_rad.allFinite() && std::isfinite(posture.carriage_m);
 }
 
-/// A motion of both arms and the carriage, given for every robot cycle.
+/// Gives a posture of both arms and the carriage for every robot cycle.
 struct Motion {
   int cycles = 0;                               ///< number of cycles; the last is at rest
   std::function<Posture(int cycle)> at;         ///< from 1

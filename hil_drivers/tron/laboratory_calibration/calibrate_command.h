@@ -1,5 +1,6 @@
 #pragma once
-// vbar tron calibrate: measures a bench and writes its calibration. vbar tron check: is it still valid?
+// vbar tron calibrate: measures a testbed and writes its calibration. vbar tron check: measures whether a calibration
+// is still valid.
 
 namespace CLI {
 class App;

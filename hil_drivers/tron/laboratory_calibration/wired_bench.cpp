@@ -31,7 +31,7 @@ DeviceSettings device_settings(const WiredBenchSettings& settings) {
   return devices;
 }
 
-/// A line to the control socket of an emulated bench, and its answer.
+/// A line to the control socket of an emulator, and its answer.
 std::string answer_of(const std::filesystem::path& socket, const std::string& line) {
   const auto deadline = io::Clock::now() + kControlPatience;
   const auto channel = io::connect_unix(socket.string(), deadline);

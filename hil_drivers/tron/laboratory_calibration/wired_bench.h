@@ -1,5 +1,5 @@
 #pragma once
-// A bench to calibrate, over its wires.
+// Testbed under calibration, over its wires.
 
 #include <filesystem>
 #include <functional>
@@ -15,7 +15,7 @@ namespace vbar::tron::calibrate {
 
 struct WiredBenchSettings {
   BenchFile bench;
-  std::string bench_command;  ///< command line of an emulated bench; empty: the laboratory of the bench file
+  std::string bench_command;  ///< command line of an emulator; empty: the laboratory of the bench file
   std::uint64_t seed = 1;
   std::filesystem::path data_directory;
   twins::camera::Region region{160, 100, 1600, 1000};
@@ -25,7 +25,7 @@ struct WiredBenchSettings {
 
 class WiredBench final : public CalibrationBench {
  public:
-  /// Starts an emulated bench and opens all devices. Throws std::runtime_error.
+  /// Starts an emulator and opens all devices. Throws std::runtime_error.
   explicit WiredBench(const WiredBenchSettings& settings);
 
   [[nodiscard]] BenchIdentity identity() override;

@@ -1,5 +1,5 @@
 #pragma once
-// Powers of the light boxes for which they shine on the target as the Earth does.
+// Powers of the light boxes with which they shine on the target as the Earth does.
 
 #include <array>
 
@@ -9,14 +9,14 @@
 
 namespace vbar::tron {
 
-/// Light of the Earth at the target in laboratory axes.
+/// Holds the light of the Earth at the target in laboratory axes.
 struct EarthLight {
   fsw::Vector3 direction_L = fsw::Vector3::UnitZ();  ///< to its middle, unit
   double half_angle = 1.1;                           ///< angular radius of the disc, rad
   double ratio = 0.0;  ///< irradiance of an area that faces it, to that of one that faces the Sun
 };
 
-/// Irradiances on a sphere about the target: each of its 162 normals belongs to a point of it.
+/// Irradiances on a sphere about the target: each element belongs to one of its 162 normals.
 using NormalIrradiances = Eigen::VectorXd;
 
 struct BoxPowers {
@@ -26,13 +26,13 @@ struct BoxPowers {
 
 class BoxLight {
  public:
-  /// `full_light`: of each box, relative to full power as designed.
+  /// `full_light`: light of each box, relative to full power as designed.
   explicit BoxLight(const BenchFile& bench, const std::array<double, kBoxes>& full_light = all_full());
 
-  /// Irradiances by box i at full power as designed, column i, to that of the lamp at full power. `centre_L`: of the
-  /// target, m.
+  /// Returns irradiances by box i at full power as designed, column i, to that of the lamp at full power. `centre_L`:
+  /// centre of the target, m.
   [[nodiscard]] Eigen::MatrixXd irradiances(const fsw::Vector3& centre_L) const;
-  /// The same of the Earth, to that of the Sun: the digital twin's light of the Earth.
+  /// Returns irradiances by the Earth, relative to that of the Sun: the digital twin's light of the Earth.
   [[nodiscard]] NormalIrradiances irradiances(const EarthLight& earth) const;
 
   /// Throws std::invalid_argument for a number that is not finite.

@@ -1,5 +1,5 @@
 #pragma once
-// The 12 values of 16 bits that the lights of the bench get: lamp power, lamp place, boxes 1 to 10.
+// Values of 16 bits for the lights of the testbed: lamp power, lamp place, boxes 1 to 10.
 
 #include <array>
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace vbar::tron {
 
 using LightValues = std::array<std::uint16_t, 2 + kBoxes>;
 
-/// Powers beyond what a source can give are cut to that, azimuths to the lamp's arc. A number that is not finite gives
+/// Limits powers to those that a source can give, azimuths to the lamp's arc. A number that is not finite gives
 /// zero.
 [[nodiscard]] LightValues light_values(const LightLevels& levels, const Lamp& lamp, const PhotometricTable& table);
 

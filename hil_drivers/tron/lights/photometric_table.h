@@ -1,5 +1,5 @@
 #pragma once
-// Which value a source of light gets for a power of light, from levels at which its light was measured. Between two
+// Values of a source of light for powers of light, from levels at which its light was measured. Between two
 // levels light is a power of the level, light = a level^g, as it is below the lowest: a source that follows one power
 // law is met exactly by any two levels.
 
@@ -19,17 +19,17 @@ inline constexpr std::size_t kLightSources = 1 + kBoxes;
 
 class LightResponse {
  public:
-  /// Light proportional to the level.
+  /// Makes light proportional to the level.
   LightResponse() = default;
-  /// Levels of the value (share of 65535) and the light there, relative to full power as designed. Levels of zero are
-  /// left out. Throws std::invalid_argument, which names the source, unless at least two levels and their light rise
-  /// strictly and are in (0, 1] and positive.
+  /// Takes levels of the value (share of 65535) and the light there, relative to full power as designed. Levels of zero
+  /// are left out. Throws std::invalid_argument, which names the source, unless at least two levels and their light
+  /// rise strictly and are in (0, 1] and positive.
   explicit LightResponse(const LightTable& table);
 
   [[nodiscard]] double light(double level) const;
-  /// The inverse; at most 1.
+  /// Returns the level for a light; at most 1.
   [[nodiscard]] double level(double light) const;
-  /// The largest power that the source can give.
+  /// Returns the largest power that the source can give.
   [[nodiscard]] double full_light() const { return light(1.0); }
 
  private:

@@ -9,7 +9,7 @@
 
 namespace vbar::tron {
 
-/// By which an exposure is longer in the laboratory than in orbit.
+/// Returns the factor by which an exposure is longer in the laboratory than in orbit.
 [[nodiscard]] inline double exposure_factor(const Lamp& lamp) {
   return 1.0 / lamp.irradiance_ratio;
 }
@@ -18,7 +18,8 @@ class RoomLight final : public LightPlanner {
  public:
   RoomLight(const BenchFile& bench, const Calibration& calibration, const PhotometricTable& table);
 
-  /// The lamp shines as bright as the visible part of the Sun, at its azimuth of `place`; the boxes as the Earth.
+  /// Returns levels at which the lamp shines as bright as the visible part of the Sun, at its azimuth of `place`; the
+  /// boxes as the Earth.
   [[nodiscard]] LightLevels levels(const Scene& scene, const Place& place) override;
 
  private:

@@ -7,7 +7,7 @@
 
 namespace vbar::tron {
 
-/// The 162 corners of an icosahedron whose edges are divided into four, on the unit sphere.
+/// Returns the 162 corners of an icosahedron whose edges are divided into four, on the unit sphere.
 [[nodiscard]] const std::vector<fsw::Vector3>& sphere_normals();
 
 }  // namespace vbar::tron

@@ -10,10 +10,10 @@
 
 namespace vbar::tron {
 
-/// Between two postures, `share` from 0 to 1.
+/// Returns the posture between two, `share` from 0 to 1.
 [[nodiscard]] Posture between(const Posture& from, const Posture& to, double share);
 
-/// Limits of all axes, times the override: of the share of a straight path that is covered.
+/// Limits the share of a straight path that is covered by the limits of all axes, times the override.
 class AxisLimitsOfBench {
  public:
   explicit AxisLimitsOfBench(const BenchFile& bench);
@@ -33,7 +33,7 @@ class AxisLimitsOfBench {
 
 class Path {
  public:
-  /// Nowhere to go.
+  /// Makes a path that leads nowhere.
   explicit Path(const Posture& at = {}) : start_(at), end_(at) {}
 
   /// Adds a straight leg from the end; no cycles if it leads nowhere. Throws std::invalid_argument for a posture that
@@ -41,9 +41,10 @@ class Path {
   void go_to(const Posture& posture, const AxisLimitsOfBench& limits, double cycle_s);
 
   [[nodiscard]] int cycles() const;  ///< the last is at rest
-  /// After a number of cycles: 0 is the start, `cycles()` the end.
+  /// Returns the posture after a number of cycles: 0 is the start, `cycles()` the end.
   [[nodiscard]] Posture at(int cycle) const;
-  /// Slows down along this path from `at(cycle)` on; its own cycle 0 is that posture. It comes to rest within the leg.
+  /// Returns the path that slows down along this one from `at(cycle)` on; its own cycle 0 is that posture. It comes to
+  /// rest within the leg.
   [[nodiscard]] Path stop_after(int cycle) const;
 
   [[nodiscard]] const Posture& start() const { return start_; }

@@ -10,23 +10,23 @@
 
 namespace vbar::tron {
 
-/// Why there is no path, one sentence.
+/// States why there is no path, one sentence.
 struct NoPath {
   std::string reason;
 };
 
 class PathPlanner {
  public:
-  /// `bodies` must outlive it.
+  /// `bodies` must outlive the planner.
   PathPlanner(const BenchFile& bench, const BenchBodies& bodies);
 
   [[nodiscard]] const AxisLimitsOfBench& limits() const { return limits_; }
 
-  /// Straight if that is free, else the fastest free detour: one arm or both go to their home posture first. An end
-  /// beyond limits, in collision or not finite has no path. A corrected posture may be closer than the clearance: from
-  /// and to one, half the clearance is kept.
+  /// Returns the straight path if it is free, else the fastest free detour: one arm or both go to their home posture
+  /// first. An end beyond limits, in collision or not finite has no path. A corrected posture may be closer than the
+  /// clearance: from and to one, half the clearance is kept.
   [[nodiscard]] std::variant<Path, NoPath> plan(const Posture& from, const Posture& to) const;
-  /// Only if it is straight.
+  /// Returns true if the straight path is free.
   [[nodiscard]] bool is_straight_free(const Posture& from, const Posture& to) const;
 
  private:

@@ -7,7 +7,7 @@
 
 namespace vbar::tron {
 
-/// All positive.
+/// Holds limits, all positive.
 struct ProgressLimits {
   double speed = 0.0, acceleration = 0.0, jerk = 0.0;
 };
@@ -16,17 +16,17 @@ struct Progress {
   double place = 0.0, speed = 0.0, acceleration = 0.0;
 };
 
-/// Duration of the fastest motion from rest to rest over `distance` >= 0, s.
+/// Returns the duration of the fastest motion from rest to rest over `distance` >= 0, s.
 [[nodiscard]] double rest_to_rest_s(double distance, const ProgressLimits& limits);
 
 class SCurve {
  public:
   SCurve() = default;
-  /// The fastest from 0 to `distance` >= 0.
+  /// Returns the fastest motion from 0 to `distance` >= 0.
   static SCurve rest_to_rest(double distance, const ProgressLimits& limits);
 
   [[nodiscard]] double duration_s() const { return duration_s_; }
-  /// At rest before 0 and after the end.
+  /// Returns the progress at a time: at rest before 0 and after the end.
   [[nodiscard]] Progress at(double time_s) const;
 
   /// Slows down from `time_s` on as fast as the limits of this motion permit; begins at 0 s. It comes to rest at

@@ -1,5 +1,5 @@
 #pragma once
-// Postures of one arm for a pose of its flange, with what speaks against each.
+// Postures of one arm for a pose of its flange, with the costs of each.
 
 #include <array>
 #include <cstddef>

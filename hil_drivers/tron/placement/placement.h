@@ -28,7 +28,7 @@ struct Placement {
   double cost_s = 0.0;
 };
 
-/// Why there is none, one sentence, and how many trials ended where.
+/// States why there is no placement, one sentence, and the number of trials that ended at each check.
 struct NoPlacement {
   std::string reason;
   int beyond_reach = 0, beyond_lamp = 0, colliding = 0, too_hidden = 0, blocked = 0;
@@ -44,21 +44,22 @@ struct PlacementSettings {
   double shaded_cost_s = 1.0;  ///< cost of each lit point of the hull, four a face, in an arm's shadow
 };
 
-/// Cost, s, of the Earth's light that the boxes cannot make at a pose of camera and target in L.
+/// Returns the cost, s, of the Earth's light that the boxes cannot make at a pose of camera and target in L.
 using EarthLightCost =
     std::function<double(const Scene&, const Eigen::Isometry3d& T_L_C, const Eigen::Isometry3d& T_L_T)>;
 
-/// Whether a placement is taken; for instance whether the arms as calibrated reach it.
+/// Returns true if a placement is accepted; for instance if the arms as calibrated reach it.
 using PlacementFilter = std::function<bool(const Posture&)>;
 
 class PlacementSearch {
  public:
-  /// `bodies` and `paths` must outlive it. `points_body`: to be seen, full-scale body frame.
+  /// `bodies` and `paths` must outlive the search. `points_body`: points that the camera has to see, full-scale body
+  /// frame.
   PlacementSearch(const BenchFile& bench, const BenchBodies& bodies, const PathPlanner& paths,
                   std::vector<fsw::Vector3> points_body, const PlacementSettings& settings, EarthLightCost earth = {});
 
-  /// Free of collisions, with a free path from `from`. The same scene, posture, lamp and number give the same result.
-  /// `lamp_rad`: where the lamp is; none: its travel costs nothing. `is_taken`: asked last, of few.
+  /// Finds a placement free of collisions, with a free path from `from`. The same scene, posture, lamp and number give
+  /// the same result. `lamp_rad`: where the lamp is; none: its travel costs nothing. `is_taken`: asked last, of few.
   [[nodiscard]] std::variant<Placement, NoPlacement> find(const Scene& scene, const Posture& from, std::int64_t number,
                                                           std::optional<double> lamp_rad = std::nullopt,
                                                           const PlacementFilter& is_taken = {}) const;

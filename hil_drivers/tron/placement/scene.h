@@ -1,5 +1,5 @@
 #pragma once
-// What an image shall show: relative pose and lighting, in the camera's axes.
+// Content of an image: relative pose and lighting, in the camera's axes.
 
 #include <Eigen/Geometry>
 

@@ -1,5 +1,5 @@
 #pragma once
-// What share of a mission's images a bench can show if it holds the target by one of its faces.
+// Share of a mission's images that a testbed can show if it holds the target by one of its faces.
 
 #include <functional>
 #include <optional>
@@ -27,16 +27,17 @@ struct FacePlan {
   [[nodiscard]] double share(int count) const { return images > 0 ? static_cast<double>(count) / images : 0.0; }
 };
 
-/// Bench time of an image beside its move and its exposure.
+/// Holds the bench time of an image beside its move and its exposure.
 struct ImageTimes {
   double settling_s = 0.5;
   double correction_s = 0.0;  ///< duration of one correction, see correction_s_of
 };
 
-/// Duration of a correction by 0.2 deg of every axis and 2 mm of the carriage, s: of arms as mastered, calibrated.
+/// Returns the duration of a correction by 0.2 deg of every axis and 2 mm of the carriage, s: arms as mastered,
+/// calibrated.
 [[nodiscard]] double correction_s_of(const BenchFile& bench);
 
-/// `share`: 0 to 1, done; true ends it early.
+/// Receives the `share` done, 0 to 1; true ends the search early.
 using PlanProgress = std::function<bool(double share)>;
 
 /// Places the sunlit scenes one after the other, each from where the arms stand, from the home posture on. A jump in

@@ -1,5 +1,5 @@
 #pragma once
-// vbar tron plan: which of a mission's images a bench can show, for each face by which it may hold the target.
+// vbar tron plan: which of a mission's images a testbed can show, for each face by which it may hold the target.
 
 namespace CLI {
 class App;

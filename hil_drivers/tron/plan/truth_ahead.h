@@ -1,5 +1,5 @@
 #pragma once
-// What a mission's camera will photograph, from its truth flown ahead.
+// Scenes of a mission's camera, from the mission's truth flown ahead.
 
 #include <functional>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace vbar::tron {
 
-/// An image that is due.
+/// Holds an image that is due.
 struct SceneAhead {
   double time_s = 0.0;  ///< since the mission's epoch
   double exposure_s = 0.0;

@@ -14,7 +14,7 @@
 
 namespace vbar::tron {
 
-/// A path as robots follow it.
+/// Returns the path as a motion that robots follow.
 [[nodiscard]] Motion motion_along(const Path& path);
 
 class ArmPlanner final : public MotionPlanner {

@@ -1,5 +1,5 @@
 #pragma once
-// The files that the controllers of both robots load, as driver and emulator read them.
+// Files that the controllers of both robots load, as driver and emulator read them.
 
 #include <filesystem>
 #include <string>
@@ -11,7 +11,7 @@ namespace vbar::tron {
 inline constexpr const char* kCameraRobot = "camera_robot";
 inline constexpr const char* kTargetRobot = "target_robot";
 
-/// $VBAR_TRON_ROBOT if set, else this folder of the source tree that the program was built from.
+/// Returns $VBAR_TRON_ROBOT if set, else this folder of the source tree that the program was built from.
 [[nodiscard]] std::filesystem::path robot_directory();
 
 /// Returns the files of kCameraRobot or kTargetRobot, in robot_directory(). Throws mission::MissionError.

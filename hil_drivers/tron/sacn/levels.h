@@ -8,7 +8,7 @@
 
 namespace vbar::tron::sacn {
 
-/// `slots` from number `start_slot` (from 1) get the values; they have to be long enough.
+/// Stores the values in `slots` from number `start_slot` (from 1); `slots` has to be long enough.
 inline void store_values(std::span<const std::uint16_t> values, int start_slot, std::vector<std::uint8_t>& slots) {
   auto at = static_cast<std::size_t>(start_slot - 1);
   for (const std::uint16_t value : values) {
@@ -17,7 +17,7 @@ inline void store_values(std::span<const std::uint16_t> values, int start_slot, 
   }
 }
 
-/// Slots that a packet does not have are zero.
+/// Loads values from slots; slots that a packet does not have are zero.
 inline void load_values(std::span<const std::uint8_t> slots, int start_slot, std::span<std::uint16_t> values) {
   auto at = static_cast<std::size_t>(start_slot - 1);
   const auto next = [&]() -> unsigned { return at < slots.size() ? slots[at++] : 0U; };

@@ -42,7 +42,7 @@ struct Sender::State {
     packet.priority = static_cast<std::uint8_t>(std::clamp(settings.priority, 0, kMaxPriority));
     packet.universe = settings.universe;
     packet.slots.assign(kMaxSlots, 0);
-    encode_data_packet(packet, datagram);  // refuses what E1.31 does not permit
+    encode_data_packet(packet, datagram);  // rejects what E1.31 does not permit
   }
 
   [[nodiscard]] std::string description() const {

@@ -1,5 +1,5 @@
 #pragma once
-// From an exposure in orbit to the scene that the laboratory shall show.
+// Conversion of an exposure in orbit to the scene of the laboratory.
 
 #include <optional>
 

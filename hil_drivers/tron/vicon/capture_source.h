@@ -1,5 +1,5 @@
 #pragma once
-// Where poses of motion capture come from. The driver runs robot cycles and then drains what has arrived, so that bench
+// Source of poses of motion capture. The driver runs robot cycles and then drains what has arrived, so that bench
 // time decides how much that is; it waits in wall clock for frames that do not depend on its cycles.
 
 #include <chrono>
@@ -10,7 +10,7 @@
 
 namespace vbar::tron::vicon {
 
-/// Which objects have moved since the average before.
+/// States which objects have moved since the average before.
 struct Moved {
   bool camera = true, target = true;
 };
@@ -43,7 +43,7 @@ class CaptureSource {
   virtual void clear() = 0;
   /// Takes what has arrived, without waiting; returns the frames since clear(). Throws std::runtime_error.
   virtual int drain() = 0;
-  /// drain() until there are `frames` since clear(), at most for `timeout` of wall clock.
+  /// Calls drain() until there are `frames` since clear(), at most for `timeout` of wall clock.
   virtual int wait_for(int frames, std::chrono::milliseconds timeout) = 0;
 
   /// Returns the average of the last `frames` since clear(). An object is tracked if it was in at least half of that
@@ -51,7 +51,7 @@ class CaptureSource {
   [[nodiscard]] virtual CaptureAverage average(int frames, const Moved& moved) = 0;
 
   [[nodiscard]] virtual CaptureCounts counts() const = 0;
-  /// For messages: "Vicon at UDP port 51001".
+  /// Returns the name for messages: "Vicon at UDP port 51001".
   [[nodiscard]] virtual std::string description() const = 0;
 };
 

@@ -25,7 +25,7 @@ Eigen::Isometry3d pose_of(const TrackedObject& object, const std::string& rotati
 
 FrameHistory::FrameHistory(std::string camera_object, std::string target_object, std::string rotation)
     : names_{std::move(camera_object), std::move(target_object)}, rotation_(std::move(rotation)) {
-  (void)rotation_of({0.0, 0.0, 0.0}, rotation_);  // refuses an unknown order
+  (void)rotation_of({0.0, 0.0, 0.0}, rotation_);  // rejects an unknown order
 }
 
 /// Whether the block belongs to frames_.back(), which it begins if it has to.

@@ -1,5 +1,5 @@
 #pragma once
-// The frames of the object stream since the last clear(), put together from their blocks.
+// Frames of the object stream since the last clear(), put together from their blocks.
 
 #include <array>
 #include <cstdint>

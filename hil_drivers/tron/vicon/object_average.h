@@ -23,8 +23,8 @@ struct ObjectAverage {
   double translation_scatter_m = 0.0, rotation_scatter_rad = 0.0;
 };
 
-/// Mean translation and mean rotation (the one for which the rotation vectors to all others sum to zero), state
-/// kTracked; of no poses: kSilent.
+/// Returns mean translation and mean rotation (the one for which the rotation vectors to all others sum to zero), state
+/// kTracked; without poses: kSilent.
 [[nodiscard]] ObjectAverage average_of(const std::vector<Eigen::Isometry3d>& poses);
 
 }  // namespace vbar::tron::vicon

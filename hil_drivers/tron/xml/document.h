@@ -1,5 +1,5 @@
 #pragma once
-// What all XML documents from a line have in common: they are flat, ASCII and small, and have no declarations,
+// XML documents on a line to a robot: they are flat, ASCII and small, and have no declarations,
 // comments, entities of their own or document types. Parsed by pugixml; nothing here throws.
 
 #include <array>
@@ -15,13 +15,14 @@ namespace vbar::tron::xml {
 /// Parses one document after the other in the same memory.
 class Document {
  public:
-  /// False: problem() is one sentence. Refused are more than `max_bytes`, characters other than printable ASCII and
-  /// blanks, "<!", "<?", entities other than the five of XML, a second root, text around the root, an attribute that
-  /// occurs twice, elements nested more than `max_depth` below the root, and what pugixml refuses.
+  /// Returns false if the text is rejected: problem() is one sentence. Rejected are more than `max_bytes`, characters
+  /// other than printable ASCII and blanks, "<!", "<?", entities other than the five of XML, a second root, text around
+  /// the root, an attribute that occurs twice, elements nested more than `max_depth` below the root, and what pugixml
+  /// rejects.
   [[nodiscard]] bool parse(std::string_view text, std::size_t max_bytes, int max_depth = 1);
   [[nodiscard]] pugi::xml_node root() const { return document_.document_element(); }
   [[nodiscard]] const std::string& problem() const { return problem_; }
-  /// False, with a problem of the caller.
+  /// Returns false, with a problem of the caller.
   bool refuse(std::string problem);
 
  private:
@@ -33,9 +34,9 @@ class Document {
   std::string problem_;
 };
 
-/// A finite decimal number, blanks around it ignored.
+/// Reads a finite decimal number, blanks around it ignored.
 [[nodiscard]] std::optional<double> finite_number(std::string_view text);
-/// Decimal digits only.
+/// Reads decimal digits only.
 [[nodiscard]] std::optional<std::uint64_t> unsigned_number(std::string_view text);
 
 /// Reads attributes `names` of `element` into `values`. The name of the first one that is missing or not finite, or
@@ -58,8 +59,8 @@ template <std::size_t kCount>
   return {};
 }
 
-/// Appends `value` with `decimals` (0 to 9) as KUKA writes it: no exponent, no negative zero. False: not finite, or
-/// beyond 1e9.
+/// Appends `value` with `decimals` (0 to 9) as KUKA writes it: no exponent, no negative zero. Returns false if it is
+/// not finite, or beyond 1e9.
 [[nodiscard]] bool append_decimal(std::string& text, double value, int decimals);
 /// Appends `text` with the characters that XML reserves replaced by entities.
 void append_escaped(std::string& document, std::string_view text);

@@ -18,7 +18,7 @@ class File {
   File& operator=(const File&) = delete;
 
   [[nodiscard]] pugi::xml_node root() const { return document_.document_element(); }
-  /// The only element `name` in `parent`.
+  /// Returns the only element `name` in `parent`.
   [[nodiscard]] pugi::xml_node child(const pugi::xml_node& parent, const char* name) const;
   [[nodiscard]] std::string attribute(const pugi::xml_node& element, const char* name) const;
   [[nodiscard]] double number(const pugi::xml_node& element, const char* attribute, double lower, double upper) const;

@@ -1,5 +1,5 @@
 #pragma once
-// Moves the axes of a controller that speaks Zaber's ASCII protocol, over a serial line or TCP. One thread.
+// Client of a controller that speaks Zaber's ASCII protocol, over a serial line or TCP: moves its axes. One thread.
 
 #include <chrono>
 #include <cstdint>
@@ -24,7 +24,7 @@ struct ClientSettings {
   std::chrono::milliseconds move_limit{60000};
 };
 
-/// One sentence with the line, the axis and what the controller reported.
+/// Reports one sentence with the line, the axis and what the controller reported.
 class RailError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -52,7 +52,7 @@ class Client {
   /// Stops all axes.
   void stop();
 
-  /// The reply to one command. Throws for a rejection and a fault.
+  /// Returns the reply to one command. Throws for a rejection and a fault.
   Message command(int axis, const std::string& text);
 
   [[nodiscard]] const std::string& line() const { return settings_.line; }
@@ -67,7 +67,7 @@ class Client {
   wire::LineBuffer lines_;
 };
 
-/// What a warning of the protocol means: "stalled" of FS.
+/// Returns the meaning of a warning of the protocol: "stalled" for FS.
 [[nodiscard]] std::string meaning_of(const std::string& warning);
 
 }  // namespace vbar::zaber

@@ -1,5 +1,5 @@
 #pragma once
-// One motorised lead-screw axis: counted microsteps, and where its carriage really is.
+// Motorised lead-screw axis: counted microsteps, and the real place of its carriage.
 
 #include <cstdint>
 #include <optional>
@@ -23,11 +23,11 @@ class Axis {
  public:
   Axis(const AxisSettings& settings, engine::RandomStream places);
 
-  // Times in seconds, never decreasing.
+  // Homes the axis. Times in seconds, never decreasing.
   void home(double now_s);
-  /// To a counted place; false if it is beyond the limits.
+  /// Moves to a counted place; returns false if it is beyond the limits.
   [[nodiscard]] bool move_to(std::int64_t microsteps, double now_s);
-  /// At a constant speed, microsteps/s, up to a limit.
+  /// Moves at a constant speed, microsteps/s, up to a limit.
   void move_at(double microsteps_per_s, double now_s);
   void stop(double now_s);
   void advance(double now_s);
@@ -43,12 +43,12 @@ class Axis {
   [[nodiscard]] double microstep_um() const { return settings_.microstep_um; }
 
   [[nodiscard]] bool is_homed() const { return is_homed_; }
-  /// The gravest warning, "--" without one.
+  /// Returns the gravest warning, "--" without one.
   [[nodiscard]] std::string warning() const;
-  /// Warnings that stay until they are cleared.
+  /// Clears the warnings that stay until then.
   void clear_warnings();
 
-  /// Where the carriage is, from the home sensor.
+  /// Returns the place of the carriage, from the home sensor.
   [[nodiscard]] double carriage_um() const;
 
   // Faults.
@@ -56,7 +56,7 @@ class Axis {
   void block() { is_blocked_ = true; }
   void release() { is_blocked_ = false; }
   [[nodiscard]] std::uint64_t stalls() const { return stalls_; }
-  /// By hand, at the knob of the screw: the count follows.
+  /// Displaces the carriage by hand, at the knob of the screw: the count follows.
   void displace(double um);
 
  private:

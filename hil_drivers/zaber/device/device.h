@@ -1,5 +1,5 @@
 #pragma once
-// An emulated controller with two axes or more that answers Zaber ASCII commands; no sockets.
+// Emulated controller with two axes or more that answers Zaber ASCII commands; no sockets.
 
 #include <functional>
 #include <string>
@@ -19,14 +19,14 @@ struct DeviceSettings {
 
 class Device {
  public:
-  /// `now_s`: the time of the moves.
+  /// Takes `now_s`: the time of the moves.
   Device(const DeviceSettings& settings, std::function<double()> now_s);
 
-  /// The replies to a line without its end, each without its end: one for an axis or the device, none for a line of
-  /// another device, of a form that no device answers or with a wrong checksum.
+  /// Returns the replies to a line without its end, each without its end: one for an axis or the device, none for a
+  /// line of another device, of a form that no device answers or with a wrong checksum.
   [[nodiscard]] std::vector<std::string> answer(std::string_view line);
 
-  /// Axes count from 1 on the wire, from 0 here. The moves have advanced to now.
+  /// Returns an axis, counted from 1 on the wire, from 0 here. Its moves have advanced to now.
   [[nodiscard]] Axis& axis(std::size_t index);
   [[nodiscard]] std::size_t axes() const { return axes_.size(); }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The lines of an emulated controller: a pseudo-terminal and a TCP port of 127.0.0.1. Commands end in LF, CR or both;
+// Lines of an emulated controller: a pseudo-terminal and a TCP port of 127.0.0.1. Commands end in LF, CR or both;
 // replies in CR LF.
 
 #include <cstdint>
@@ -14,7 +14,8 @@ namespace vbar::zaber {
 
 class DeviceServer {
  public:
-  /// `device` outlives this; `terminal` is the name of the serial line. Throws std::runtime_error.
+  /// Opens both lines. `device` outlives the server; `terminal` is the name of the serial line. Throws
+  /// std::runtime_error.
   DeviceServer(boost::asio::io_context& context, Device& device, const std::filesystem::path& terminal,
                std::uint16_t tcp_port = 0);
   ~DeviceServer();

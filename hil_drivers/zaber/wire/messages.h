@@ -49,11 +49,11 @@ struct Message {
 
 [[nodiscard]] std::string checksum_of(std::string_view characters);
 
-/// Without the end of the line. Throws WireError for what the line cannot hold.
+/// Encodes without the end of the line. Throws WireError for what the line cannot hold.
 [[nodiscard]] std::string encode(const Command& command);
 [[nodiscard]] std::string encode(const Message& message);
 
-/// A line without its end. Throws WireError: one sentence with the line.
+/// Decodes a line without its end. Throws WireError: one sentence with the line.
 [[nodiscard]] Command decode_command(std::string_view line);
 [[nodiscard]] Message decode_message(std::string_view line);
 

@@ -1,5 +1,5 @@
 #pragma once
-// The detector of the emulated camera: from expected photo-electrons to the numbers of the region that is read.
+// Detector of the emulated camera: from expected photo-electrons to the numbers of the region that is read.
 
 #include <cstdint>
 #include <list>
@@ -23,7 +23,7 @@ class CameraHead {
   /// `camera`: its own figures, camera_of().
   CameraHead(const twins::camera::CameraSettings& camera, std::uint64_t seed, bool has_noise);
 
-  /// `number`: of the exposure, the key of its noise.
+  /// Exposes; `number` of the exposure is the key of its noise.
   void expose(const twins::camera::PhotonImage& image, const ReadOut& read_out, std::uint64_t number,
               std::vector<std::uint16_t>& dn);
 

@@ -1,5 +1,5 @@
 #pragma once
-// The emulated camera on the network: a GigE Vision device on a loopback address of its own.
+// Emulated camera on the network: a GigE Vision device on a loopback address of its own.
 
 #include <cstdint>
 #include <functional>
@@ -20,7 +20,7 @@ class CameraLink {
  public:
   using Expose = std::function<std::vector<std::uint16_t>(const ExposureRequest& request)>;
 
-  /// On the first address from 127.0.13.1 that has no camera. Throws std::runtime_error if there is none.
+  /// Takes the first address from 127.0.13.1 that has no camera. Throws std::runtime_error if there is none.
   CameraLink(boost::asio::io_context& context, const BenchSettings& settings,
              const twins::camera::CameraSettings& camera, Expose expose);
 

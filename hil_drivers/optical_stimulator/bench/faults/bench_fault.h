@@ -1,5 +1,5 @@
 #pragma once
-// The faults of the bench, as its control line names them: one JSON object in a line, such as
+// Faults of the emulator, as its control line names them: one JSON object in a line, such as
 // {"kind": "late_frame", "frame": 100, "frames": 1}.
 
 #include <array>
@@ -37,7 +37,7 @@ enum class FaultKind {
   kBenchExit,        ///< the program ends at once, with exit code 3
 };
 
-/// What a fault lasts for.
+/// Names the span for which a fault lasts.
 enum class FaultSpan { kOnce, kFrames, kSeconds };
 
 struct FaultRule {
@@ -94,7 +94,7 @@ struct Fault {
 
 /// Reads the keys kind, frame, frames, duration_s, axis, ... of a table and finishes it. Throws MissionError.
 [[nodiscard]] Fault read_fault(const mission::TableReader& section);
-/// The same of one line of JSON. Throws MissionError.
+/// Reads a fault from one line of JSON. Throws MissionError.
 [[nodiscard]] Fault fault_from_json(const std::string& line);
 
 }  // namespace vbar::optical_stimulator::bench

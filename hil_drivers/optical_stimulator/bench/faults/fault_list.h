@@ -1,5 +1,5 @@
 #pragma once
-// The faults of a session: begun when they are due, in effect for a number of exposures or seconds, acknowledged when
+// Faults of a session: begun when they are due, in effect for a number of exposures or seconds, acknowledged when
 // they have taken effect, on the control line and as one line of JSON in a file.
 
 #include <cstdint>
@@ -14,15 +14,15 @@
 
 namespace vbar::optical_stimulator::bench {
 
-/// What faults make of one exposure.
+/// Holds the effect of faults on one exposure.
 struct ExposureFaults {
   PanelFaults panel;
   double exposure_factor = 1.0, gain_factor = 1.0, brightness_factor = 1.0;
 };
 
-/// The parts of the bench that faults other than those of an exposure act on.
+/// Holds the parts of the emulator that faults other than those of an exposure act on.
 struct FaultActions {
-  /// Faults of the camera's link: on with their value, off.
+  /// Sets a fault of the camera's link: on with its value, off.
   std::function<void(const Fault& fault, bool is_on)> camera;
   std::function<void(double x_um, double y_um)> bump;
   std::function<void(std::size_t axis)> stall_rail;
@@ -35,19 +35,19 @@ class FaultList {
  public:
   using Acknowledge = bench_lines::Acknowledge;
 
-  /// `file` gets a line for each fault that took effect. Throws std::runtime_error if it cannot be made.
+  /// Opens `file`, which gets a line for each fault that took effect. Throws std::runtime_error if it cannot be made.
   FaultList(FaultActions actions, const std::filesystem::path& file);
 
-  /// `now_s`: on any clock, the same in all calls.
+  /// Adds a fault. `now_s`: on any clock, the same in all calls.
   void add(const Fault& fault, double now_s, Acknowledge acknowledge = {});
 
-  /// Before exposure number `frame`.
+  /// Begins the faults that are due before exposure number `frame`.
   [[nodiscard]] ExposureFaults begin_exposure(std::uint64_t frame, double now_s);
-  /// After it.
+  /// Ends the faults whose exposures have passed.
   void end_exposure(std::uint64_t frame);
-  /// In between: ends faults whose time has passed, looks for effects.
+  /// Ends faults whose time has passed, and looks for effects, between exposures.
   void advance(double now_s);
-  /// Whether any fault has been injected.
+  /// Returns true if any fault has been injected.
   [[nodiscard]] bool has_any() const { return !active_.empty(); }
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// The true optics of the emulated bench: where on the detector each pixel of the display is seen, how large it appears
+// True optics of the emulator: where on the detector each pixel of the display is seen, how large it appears
 // and how sharp it is.
 //
 //   point of the display   P = R(tilt, turn) (X, Y, 0) + (shift, f + e)      X, Y: pixel times pitch
@@ -33,7 +33,7 @@ struct OpticsErrors {
   double coma_px = 0.05;  ///< displacement of the centroid at the corner of the detector
 };
 
-/// What moves in a run.
+/// Holds the states that change in a run.
 struct BenchState {
   double separation_mm = 40.0;               ///< distance between the lenses
   double display_mm = 34.2857142857142857;   ///< display behind lens 2
@@ -43,7 +43,7 @@ struct BenchState {
   friend bool operator==(const BenchState&, const BenchState&) = default;
 };
 
-/// How one display pixel is seen.
+/// Describes how one display pixel is seen.
 struct SeenPixel {
   fsw::Vector2 pixel = fsw::Vector2::Zero();    ///< pixel of the detector
   fsw::Vector2 coma_px = fsw::Vector2::Zero();  ///< displacement of the centroid, outwards
@@ -63,12 +63,12 @@ class BenchOptics {
 
   /// Returns the image of the place (u, v) of the display; an integer is the centre of a pixel.
   [[nodiscard]] SeenPixel seen(double u, double v) const;
-  /// The same place alone.
+  /// Returns the place of that pixel alone.
   [[nodiscard]] fsw::Vector2 detector_pixel(double u, double v) const;
-  /// The place of the display that is seen at a pixel of the detector, to 1e-6 px.
+  /// Returns the the place of the display that is seen at a pixel of the detector, to 1e-6 px.
   [[nodiscard]] fsw::Vector2 display_pixel(const fsw::Vector2& detector_pixel) const;
 
-  /// Evenness of the field at a place of the display, 1 on average.
+  /// Returns the evenness of the field at a place of the display, 1 on average.
   [[nodiscard]] double light_at(double u, double v) const { return 1.0 + field_->at(u, v).light; }
 
   [[nodiscard]] double focal_length_mm() const { return focal_length_mm_; }

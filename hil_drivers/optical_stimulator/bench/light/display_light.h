@@ -1,5 +1,5 @@
 #pragma once
-// From the counts of a display to its luminance.
+// Conversion of the counts of a display to its luminance.
 //
 //   L(D) = L_full ((D - D0)/(255 - D0))^gamma (D > D0)  + L_full / contrast,   times the evenness of the pixel
 
@@ -17,17 +17,17 @@ struct DisplayLight {
   double contrast = 1e5;
   double pixel_unevenness = 0.02;  ///< one sigma, relative
 
-  /// Above the black level, cd/m^2.
+  /// Returns the luminance above the black level, cd/m^2.
   [[nodiscard]] double luminance(double count) const;
   [[nodiscard]] double black_luminance() const { return full_luminance / contrast; }
 };
 
-/// The counts that a display shows, rows from the top.
+/// Number of counts that a display shows.
 inline constexpr std::size_t kCounts = 256;
 using CountTable = std::array<float, kCounts>;
 [[nodiscard]] CountTable luminance_table(const DisplayLight& light);
 
-/// Light of single pixels relative to their neighbourhood.
+/// Holds the light of single pixels relative to their neighbourhood.
 class PixelEvenness {
  public:
   PixelEvenness(double sigma, std::uint64_t seed) : sigma_(sigma), stream_(seed, "bench/display/pixels") {}
@@ -38,8 +38,8 @@ class PixelEvenness {
   engine::RandomStream stream_;
 };
 
-/// Photons/m^2 at the camera in a second per lux of illuminance: a star of magnitude 0 is 2.54e-6 lx (Allen 1973,
-/// rounded) and radiates `zero_magnitude_photons`.
+/// Returns photons/m^2 at the camera in a second per lux of illuminance: a star of magnitude 0 is 2.54e-6 lx (Allen
+/// 1973, rounded) and radiates `zero_magnitude_photons`.
 [[nodiscard]] constexpr double photons_per_lux(double zero_magnitude_photons) {
   return zero_magnitude_photons / 2.54e-6;
 }

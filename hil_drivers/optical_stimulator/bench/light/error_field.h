@@ -1,6 +1,6 @@
 #pragma once
-// What no lens model expresses: a smooth field of direction errors over the display, and a smooth unevenness of its
-// light. Both are sums of plane waves, tabulated on a grid that a cubic spline interpolates.
+// Errors that no lens model expresses: a smooth field of direction errors over the display, and a smooth unevenness of
+// its light. Both are sums of plane waves, tabulated on a grid that a cubic spline interpolates.
 
 #include <cstdint>
 #include <vector>
@@ -22,10 +22,10 @@ struct FieldError {
 
 class ErrorField {
  public:
-  /// A display of `width` times `height` pixels.
+  /// Draws the field of a display of `width` times `height` pixels.
   ErrorField(const FieldSettings& settings, std::uint64_t seed, int width, int height);
 
-  /// At a display pixel; beyond the display the field continues for a few pixels.
+  /// Returns the errors at a display pixel; beyond the display the field continues for a few pixels.
   [[nodiscard]] FieldError at(double u, double v) const;
 
   static constexpr int kStep_px = 16;

@@ -1,5 +1,5 @@
 #pragma once
-// The wide halo of a camera's lens, from the image of its core.
+// Wide halo of a camera's lens, from the image of its core.
 
 #include <vector>
 

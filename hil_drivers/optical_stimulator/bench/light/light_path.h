@@ -1,6 +1,6 @@
 #pragma once
-// From the counts on the display to the expected photo-electrons on a region of the detector. Every lit pixel is
-// spread over the detector at its place; the even black level of the display is added.
+// Conversion of the counts on the display to the expected photo-electrons on a region of the detector. Every lit pixel
+// is spread over the detector at its place; the even black level of the display is added.
 
 #include <cstdint>
 #include <span>
@@ -13,7 +13,7 @@
 
 namespace vbar::optical_stimulator::bench {
 
-/// What the display shows for a part of an exposure.
+/// Holds what the display shows for a part of an exposure.
 struct ShownFrame {
   std::span<const std::uint8_t> counts;  ///< rows from the top
   double fraction = 1.0;                 ///< share of the exposure
@@ -31,15 +31,15 @@ class LightPath {
   /// `optics` outlives this.
   LightPath(const LightPathSettings& settings, const BenchOptics& optics);
 
-  /// To be called after the state of the optics changed: what was computed of it is discarded.
+  /// Discards results of the optics; to be called after the state of the optics changed.
   void optics_changed();
 
-  /// `image.region` is set by the caller. `brightness`: of the display, 1 as in its settings.
+  /// Computes the light on `image`, whose region is set by the caller. `brightness`: of the display, 1 as in its settings.
   void expose(std::span<const ShownFrame> frames, double exposure_s, double brightness,
               twins::camera::PhotonImage& image);
 
  private:
-  /// A display pixel as it is seen, computed when it is lit first.
+  /// Holds a display pixel as it is seen, computed when it is lit first.
   struct Seen {
     float x = 0.0F, y = 0.0F, coma_x = 0.0F, coma_y = 0.0F;
     float electrons = 0.0F;     ///< a second and cd/m^2

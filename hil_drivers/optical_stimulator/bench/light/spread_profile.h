@@ -14,10 +14,10 @@ class SpreadProfile {
  public:
   explicit SpreadProfile(double sigma_px);
 
-  /// Pixels before and behind the nearest one.
+  /// Returns the number of pixels before and behind the nearest one.
   [[nodiscard]] int radius() const { return radius_; }
-  /// Weights of the 2 radius + 1 pixels for a point that is `offset` (-0.5 to 0.5) behind the centre of the middle
-  /// one; offsets up to 1 are accepted.
+  /// Computes the weights of the 2 radius + 1 pixels for a point that is `offset` (-0.5 to 0.5) behind the centre of
+  /// the middle one; offsets up to 1 are accepted.
   void weights(double offset, std::span<float> weights) const;
 
  private:
@@ -26,11 +26,11 @@ class SpreadProfile {
   std::vector<float> table_;
 };
 
-/// Profiles of all widths, to 0.01 px, made when they are asked for first.
+/// Holds the profiles of all widths, to 0.01 px, made when they are first asked for.
 class SpreadProfiles {
  public:
   SpreadProfiles();
-  /// Widths beyond the widest count as that.
+  /// Returns the profile of a width; widths beyond the widest count as the widest.
   [[nodiscard]] std::size_t index_of(double sigma_px) const;
   [[nodiscard]] const SpreadProfile& at(std::size_t index);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What the display shows while the camera exposes, and the faults of a display.
+// Pictures that the display shows while the camera exposes, and the faults of a display.
 
 #include <cstdint>
 #include <functional>
@@ -20,7 +20,7 @@ struct PanelFaults {
   friend bool operator==(const PanelFaults&, const PanelFaults&) = default;
 };
 
-/// Pictures of the screen during an exposure: each with its part of the light.
+/// Holds a picture of the screen during an exposure, with its part of the light.
 struct Picture {
   std::shared_ptr<const std::vector<std::uint8_t>> counts;
   double fraction = 1.0;
@@ -31,7 +31,7 @@ class Panel {
  public:
   Panel(int width, int height) : width_(width), height_(height) {}
 
-  /// What the panel shows of `pictures`, which were on the screen during the exposure.
+  /// Returns what the panel shows of `pictures`, which were on the screen during the exposure.
   [[nodiscard]] Pictures show(Pictures pictures, const PanelFaults& faults);
 
  private:

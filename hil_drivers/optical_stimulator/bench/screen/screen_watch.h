@@ -1,5 +1,5 @@
 #pragma once
-// The pictures that are on a display during an exposure.
+// Pictures that are on a display during an exposure.
 //
 // Pace "fast": what is on the screen now; it has been there for longer than the display's latency. Pace "real": the
 // screen is taken at every refresh, shown by the display a number of refreshes later and for one period, and each
@@ -20,14 +20,14 @@ namespace vbar::optical_stimulator::bench {
 
 using ReadScreen = std::function<void(std::vector<std::uint8_t>& grey)>;
 
-/// A picture that the display begins to show at `begin_s`.
+/// Holds a picture that the display begins to show at `begin_s`.
 struct TimedPicture {
   double begin_s = 0.0;
   std::shared_ptr<const std::vector<std::uint8_t>> counts;
 };
 
-/// Parts of the light of an exposure from `begin_s` to `end_s`: pictures in order, the first of which was shown before
-/// it; `response_s`: time constant of the pixels.
+/// Returns the parts of the light of an exposure from `begin_s` to `end_s`: pictures in order, the first of which was
+/// shown before it; `response_s`: time constant of the pixels.
 [[nodiscard]] Pictures pictures_of(const std::deque<TimedPicture>& shown, double begin_s, double end_s,
                                    double response_s);
 
@@ -35,7 +35,7 @@ class ScreenWatch {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// In pace "real" it starts a thread, which calls `read`.
+  /// Starts a thread in pace "real", which calls `read`.
   ScreenWatch(const DisplaySettings& settings, Pace pace, ReadScreen read);
   ~ScreenWatch();
   ScreenWatch(const ScreenWatch&) = delete;

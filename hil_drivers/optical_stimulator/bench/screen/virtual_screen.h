@@ -1,5 +1,5 @@
 #pragma once
-// An X server without a monitor (Xvfb) of the bench's own, and what is on its screen.
+// X server without a monitor (Xvfb), which belongs to the emulator, and what is on its screen.
 
 #include <cstdint>
 #include <filesystem>
@@ -22,9 +22,9 @@ class VirtualScreen {
   VirtualScreen(const VirtualScreen&) = delete;
   VirtualScreen& operator=(const VirtualScreen&) = delete;
 
-  /// ":7".
+  /// Returns the display's name, such as ":7".
   [[nodiscard]] const std::string& display() const { return display_; }
-  /// Grey values of what is on the screen now; may be called by any thread.
+  /// Reads the grey values of what is on the screen now; may be called by any thread.
   void read(std::vector<std::uint8_t>& grey) const { read_grey(file_, layout_, grey); }
   [[nodiscard]] bool has_ended() { return server_ && server_->has_ended(); }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The framebuffer file of Xvfb: an X window dump (XWD, version 7) whose pixels the server changes in place.
+// Framebuffer file of Xvfb: an X window dump (XWD, version 7) whose pixels the server changes in place.
 
 #include <cstddef>
 #include <cstdint>
@@ -19,7 +19,8 @@ struct XwdLayout {
 /// pixels.
 [[nodiscard]] XwdLayout read_xwd_layout(std::span<const std::uint8_t> file);
 
-/// Grey values of the pixels, rows from the top: luma by ITU-R BT.709 in 256ths, the value itself of a grey pixel.
+/// Reads the grey values of the pixels, rows from the top: luma by ITU-R BT.709 in 256ths, the value itself of a grey
+/// pixel.
 void read_grey(std::span<const std::uint8_t> file, const XwdLayout& layout, std::vector<std::uint8_t>& grey);
 
 }  // namespace vbar::optical_stimulator::bench

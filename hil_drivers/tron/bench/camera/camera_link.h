@@ -1,7 +1,7 @@
 #pragma once
-// The emulated camera on the network: a GigE Vision device on a loopback address of its own. With the virtual clock it
-// exposes on the thread of the bench, between two robot cycles; with the real one on a thread of its own, so that the
-// robots do not wait for an image.
+// Emulated camera on the network: a GigE Vision device on a loopback address of its own. With the virtual clock it
+// exposes on the thread of the emulator, between two robot cycles; with the real one on a thread of its own, so that
+// the robots do not wait for an image.
 
 #include <atomic>
 #include <functional>
@@ -23,16 +23,16 @@
 
 namespace vbar::tron::bench {
 
-/// The steps of an exposure.
+/// Holds the steps of an exposure.
 struct ExposureSteps {
-  std::function<LabView(const gige::Request& request)> look;              ///< on the bench's thread
+  std::function<LabView(const gige::Request& request)> look;              ///< on the emulator's thread
   std::function<std::vector<std::uint16_t>(const LabView& view)> render;  ///< on the camera's
-  std::function<void()> done;                                             ///< on the bench's thread
+  std::function<void()> done;                                             ///< on the emulator's thread
 };
 
 class CameraLink {
  public:
-  /// On the first address from 127.0.21.1 that has no camera. Throws std::runtime_error if there is none.
+  /// Takes the first address from 127.0.21.1 that has no camera. Throws std::runtime_error if there is none.
   CameraLink(boost::asio::io_context& context, const BenchSettings& settings,
              const twins::camera::CameraSettings& camera, ExposureSteps steps);
   ~CameraLink();
@@ -40,15 +40,15 @@ class CameraLink {
   CameraLink& operator=(const CameraLink&) = delete;
 
   [[nodiscard]] const std::string& address() const { return address_; }
-  /// At the beginning of the last exposure.
+  /// Returns the statistics at the beginning of the last exposure.
   [[nodiscard]] gige::Device::Statistics statistics() const;
-  /// False for a fault that is not one of the link.
+  /// Returns false for a fault that is not one of the link.
   bool set_fault(const Fault& fault, bool is_on);
 
  private:
   using WorkGuard = boost::asio::executor_work_guard<boost::asio::io_context::executor_type>;
   gige::Image expose(const gige::Request& request);
-  /// On another thread, while this one goes on with `context`.
+  /// Renders on another thread, while this one goes on with `context`.
   gige::Image render(const LabView& view, boost::asio::io_context& context);
   void apply(gige::Device& device, const Fault& fault, bool is_on);
 

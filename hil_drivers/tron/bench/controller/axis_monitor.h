@@ -13,12 +13,12 @@ namespace vbar::tron::bench {
 
 class AxisMonitor {
  public:
-  /// Limits in the coordinates of AxisArray.
+  /// Takes limits in the coordinates of AxisArray.
   AxisMonitor(const std::array<AxisLimits, kServoAxes>& limits, double cycle_s) : limits_(limits), cycle_s_(cycle_s) {}
 
-  /// The axes stand at `start`.
+  /// Begins with the axes at `start`.
   void begin(const AxisArray& start);
-  /// `cycles`: since the last command. The message that switches the drives off, or empty.
+  /// Returns the message that switches the drives off, or empty. `cycles`: since the last command.
   [[nodiscard]] std::string judge(const AxisArray& command, int cycles);
 
   [[nodiscard]] const AxisArray& max_speed() const { return max_speed_; }

@@ -36,7 +36,7 @@ struct ControllerSettings {
   rsi::ContextXml context;
   std::uint64_t first_ipoc = 1;  ///< time stamp of the first cycle; + 4 each
   std::uint16_t eki_port = 0;    ///< on robot.line.address; 0: any free one
-  /// Forward kinematics as the controller has them; required.
+  /// Computes forward kinematics as the controller has them; required.
   std::function<CartesianPose(const AxisPositions&)> flange_pose = {};
 };
 
@@ -57,35 +57,35 @@ struct ControllerStatistics {
 
 class Controller {
  public:
-  /// Stands at home with the drives on. Throws std::runtime_error if an address is not available.
+  /// Begins at home with the drives on. Throws std::runtime_error if an address is not available.
   Controller(boost::asio::io_context& context, ControllerSettings settings);
   ~Controller();
   Controller(const Controller&) = delete;
   Controller& operator=(const Controller&) = delete;
 
   // ---- for the world
-  /// As the motors measure it (AIPos, EIPos); of a frozen controller the real place.
+  /// Returns the position as the motors measure it (AIPos, EIPos); of a frozen controller the real place.
   [[nodiscard]] AxisPositions position() const;
-  /// position() with the errors of the last standstill: where the axes really are.
+  /// Returns position() with the errors of the last standstill: where the axes really are.
   [[nodiscard]] AxisPositions true_position() const;
-  /// Called when the axes have come to a standstill; returns the repeatability errors that hold until the next one.
+  /// Registers the call at a standstill of the axes; it returns the repeatability errors that hold until the next one.
   void on_standstill(std::function<AxisPositions()> errors);
   [[nodiscard]] bool stands() const;
 
   // ---- faults
   void set_emergency_stop(bool is_pressed);
   void switch_drives_off(const std::string& message);
-  /// AIPos and EIPos keep their values while the arm moves.
+  /// Freezes AIPos and EIPos: they keep their values while the arm moves.
   void set_frozen(bool is_frozen);
   /// Sends nothing for this number of cycles, or until RSI is started again.
   void be_silent(std::uint64_t cycles);
-  /// The answers to this number of cycles do not arrive, or until RSI is started again.
+  /// Loses the answers to this number of cycles, or until RSI is started again.
   void lose_answers(std::uint64_t cycles);
   void set_ipoc_back(std::uint64_t milliseconds);
   /// Breaks RSI off.
   void drop_rsi();
 
-  /// A command as from Ethernet KRL, of the operator at the controller.
+  /// Executes a command as from Ethernet KRL, of the operator at the controller.
   eki::Reply execute(const eki::Command& command);
 
   // ---- state

@@ -1,5 +1,5 @@
 #pragma once
-// Program and drives of an emulated controller, cycle by cycle. For its own files.
+// Program and drives of an emulated controller, cycle by cycle. Used by the controller's own files only.
 
 #include <string>
 
@@ -15,9 +15,9 @@ struct Controller::Core {
   Core(boost::asio::io_context& context, ControllerSettings given);
 
   // ---- a cycle, called by the clock
-  /// The answer to the last state is taken, and the axes move.
+  /// Processes the answer to the last state, and moves the axes.
   void move();
-  /// The state of this cycle goes to the computer, once, if RSI is on.
+  /// Sends the state of this cycle to the computer, once, if RSI is on.
   void send_state();
 
   // ---- Ethernet KRL
@@ -28,7 +28,7 @@ struct Controller::Core {
   void announce();
 
   // ---- program
-  /// Why RSI cannot be started, or empty.
+  /// Returns why RSI cannot be started, or empty.
   [[nodiscard]] std::string start_problem() const;
   void start_rsi();
   void end_rsi();

@@ -1,6 +1,6 @@
 #pragma once
-// From the answers of the computer to commands of the axes: values that hold or fall to zero, silent clamping, and the
-// overall monitor.
+// Conversion of the answers of the computer to commands of the axes: values that hold or fall to zero, silent clamping,
+// and the overall monitor.
 
 #include <string>
 
@@ -14,16 +14,16 @@ class Correction {
  public:
   Correction(const rsi::EthernetXml& ethernet, const rsi::ContextXml& context);
 
-  /// RSI_ON: all values are zero, and count from `pose`.
+  /// Begins at RSI_ON: all values are zero, and count from `pose`.
   void begin(const AxisArray& pose);
-  /// The values of this cycle: those of the answer, or nullptr if there is no valid one.
+  /// Sets the values of this cycle: those of the answer, or nullptr if there is no valid one.
   void take(const rsi::Sen* answer);
 
   [[nodiscard]] const AxisArray& command() const { return command_; }
   [[nodiscard]] bool was_clamped() const { return was_clamped_; }
-  /// Stop has changed from 0 to 1.
+  /// Returns true if Stop has changed from 0 to 1.
   [[nodiscard]] bool stop_rises() const { return stop_rises_; }
-  /// The overall correction is beyond the monitor of this axis; empty: it is not.
+  /// Names the axis whose overall correction is beyond its monitor; empty: none is.
   [[nodiscard]] const std::string& beyond_monitor() const { return beyond_monitor_; }
 
  private:

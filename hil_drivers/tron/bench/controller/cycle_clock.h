@@ -40,18 +40,19 @@ class CycleClock {
   CycleClock(const CycleClock&) = delete;
   CycleClock& operator=(const CycleClock&) = delete;
 
-  /// Called with the number of the cycle that begins, from 1; in the order of registration.
+  /// Registers a call with the number of the cycle that begins, from 1; in the order of registration.
   void before_cycle(Function function);
   void after_motion(Function function);
 
-  /// Begins; the rest happens in handlers of the io_context. stop() ends it.
+  /// Starts the clock; the rest happens in handlers of the io_context. stop() ends it.
   void start();
   void stop();
 
   [[nodiscard]] std::uint64_t cycle() const;
-  /// Real clock: cycles that began more than 4 ms late; bench time is behind the wall clock since then.
+  /// Returns the number of cycles of the real clock that began more than 4 ms late; bench time is behind the wall clock
+  /// since then.
   [[nodiscard]] std::uint64_t overruns() const;
-  /// 4 ms times cycle().
+  /// Returns 4 ms times cycle().
   [[nodiscard]] double time_s() const;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// The Ethernet KRL port of an emulated controller. One client at a time, as the controller has it.
+// Ethernet KRL port of an emulated controller. One client at a time, as the controller has it.
 
 #include <cstdint>
 #include <functional>
@@ -17,13 +17,13 @@ class EkiServer {
  public:
   using Handler = std::function<eki::Reply(const eki::Command&)>;
 
-  /// `port` 0: any free one. Throws std::runtime_error.
+  /// Listens on `port`; 0: any free one. Throws std::runtime_error.
   EkiServer(boost::asio::io_context& context, const std::string& address, std::uint16_t port, Handler handler);
   ~EkiServer();
   EkiServer(const EkiServer&) = delete;
   EkiServer& operator=(const EkiServer&) = delete;
 
-  /// To the client, if there is one that has sent a document.
+  /// Sends to the client, if there is one that has sent a document.
   void send(const eki::State& state);
   [[nodiscard]] std::uint16_t port() const { return listener_->port(); }
 

@@ -54,7 +54,7 @@ void RsiLink::send(const rsi::Rob& rob) {
   waits_ = true;
   has_answer_ = was_reached_ = false;
   sent_at_ = WallClock::now();
-  error_code ignored;  // nobody listens: no answer will come
+  error_code ignored;  // no listener: no answer will come
   socket_.send_to(asio::buffer(datagram_), computer_, 0, ignored);
 }
 

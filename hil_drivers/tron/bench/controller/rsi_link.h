@@ -1,5 +1,5 @@
 #pragma once
-// The RSI socket of an emulated controller: a client of UDP with an ephemeral port. It sends the state of a cycle and
+// RSI socket of an emulated controller: a client of UDP with an ephemeral port. It sends the state of a cycle and
 // accepts one answer to it.
 
 #include <chrono>
@@ -25,7 +25,7 @@ struct AnswerCounts {
 
 class RsiLink {
  public:
-  /// Bound to `address`; sends to the computer of `ethernet`. `on_datagram` is called after a datagram was judged.
+  /// Binds to `address`; sends to the computer of `ethernet`. `on_datagram` is called after a datagram was judged.
   /// Throws std::runtime_error.
   RsiLink(boost::asio::io_context& context, const rsi::EthernetXml& ethernet, const std::string& address, int precision,
           std::function<void()> on_datagram);
@@ -35,14 +35,14 @@ class RsiLink {
 
   /// Sends the state; its answer is awaited from now on.
   void send(const rsi::Rob& rob);
-  /// Ends the cycle: the answer, or nullptr. Datagrams that arrived until now count.
+  /// Ends the cycle: returns the answer, or nullptr. Datagrams that arrived until now count.
   const rsi::Sen* end_cycle();
   /// Judges the datagrams that have arrived.
   void drain();
 
-  /// A state was sent and has no valid answer yet.
+  /// Returns true if a state was sent and has no valid answer yet.
   [[nodiscard]] bool waits() const { return waits_; }
-  /// A datagram has arrived in this cycle, valid or not.
+  /// Returns true if a datagram has arrived in this cycle, valid or not.
   [[nodiscard]] bool was_reached() const { return was_reached_; }
   [[nodiscard]] const AnswerCounts& counts() const { return counts_; }
 

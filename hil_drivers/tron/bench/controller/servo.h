@@ -22,18 +22,18 @@ class Servo {
  public:
   inline static constexpr double kLag_s = 0.008;
 
-  /// Stands at `start`. `deceleration` of the braking: rad/s2 (m/s2).
+  /// Begins at `start`. `deceleration` of the braking: rad/s2 (m/s2).
   Servo(const AxisArray& start, const AxisArray& deceleration, double cycle_s);
 
-  /// One cycle, in which the command moves to `command`.
+  /// Moves for one cycle, in which the command moves to `command`.
   void follow(const AxisArray& command);
-  /// One cycle of braking from the velocity that the command has; at rest: holds.
+  /// Brakes for one cycle from the velocity that the command has; at rest: holds.
   void brake();
 
   [[nodiscard]] const AxisArray& position() const { return position_; }
-  /// The position that is commanded, the braking distance so far included.
+  /// Returns the position that is commanded, the braking distance so far included.
   [[nodiscard]] const AxisArray& command() const { return command_; }
-  /// No axis is more than 1e-7 rad (m) from a command that does not move.
+  /// Returns true if no axis is more than 1e-7 rad (m) from a command that does not move.
   [[nodiscard]] bool stands() const;
 
  private:

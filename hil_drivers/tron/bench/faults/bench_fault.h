@@ -1,5 +1,5 @@
 #pragma once
-// The faults of the bench, as its control line and its files name them: {"kind": "emergency_stop", "robot": "camera"}.
+// Faults of the emulator, as its control line and its files name them: {"kind": "emergency_stop", "robot": "camera"}.
 //
 // A fault is due at once, when exposure number `at_image` (from 0) is the next one, or in robot cycle `at_cycle`; it
 // begins `after_cycles` robot cycles later.
@@ -49,7 +49,7 @@ enum class FaultKind {
   kBenchExit,        ///< the program ends at once, with exit code 3
 };
 
-/// What a fault lasts for; each span has its key, and 0 lasts until the end.
+/// Names the span for which a fault lasts; each span has its key, and 0 lasts until the end.
 enum class FaultSpan {
   kOnce,
   kImages,   ///< `images`: exposures
@@ -57,7 +57,7 @@ enum class FaultSpan {
   kSeconds,  ///< `duration_s` of wall clock: bench time may stand still meanwhile
 };
 
-/// When it is acknowledged.
+/// Names the effect at which a fault is acknowledged.
 enum class FaultEffect {
   kAtOnce,
   kExposure,    ///< after an exposure that it has changed
@@ -137,9 +137,9 @@ struct Fault {
 
 /// Reads the keys of a table and finishes it. Throws MissionError.
 [[nodiscard]] Fault read_fault(const mission::TableReader& section);
-/// The same of one line of JSON. Throws MissionError.
+/// Reads a fault from one line of JSON. Throws MissionError.
 [[nodiscard]] Fault fault_from_json(const std::string& line);
-/// A file with a JSON object a line; empty lines are ignored. Throws MissionError that names file and line.
+/// Reads a file with a JSON object a line; empty lines are ignored. Throws MissionError that names file and line.
 [[nodiscard]] std::vector<Fault> read_fault_file(const std::filesystem::path& file);
 
 }  // namespace vbar::tron::bench

@@ -1,5 +1,5 @@
 #pragma once
-// The faults of a session: each begins when it is due, lasts for its images, cycles or seconds, and is acknowledged
+// Faults of a session: each begins when it is due, lasts for its images, cycles or seconds, and is acknowledged
 // when it has taken effect, on the control line and as one line of JSON in a file.
 
 #include <cstdint>
@@ -14,22 +14,22 @@ namespace vbar::tron::bench {
 
 class FaultList {
  public:
-  /// Lets a fault begin or end. One of FaultSpan::kOnce only begins.
+  /// Lets a fault begin or end. A fault of FaultSpan::kOnce only begins.
   using Act = std::function<void(const Fault& fault, bool is_on)>;
 
-  /// `file` gets a line for each fault that took effect. Throws std::runtime_error if it cannot be made.
+  /// Opens `file`, which gets a line for each fault that took effect. Throws std::runtime_error if it cannot be made.
   FaultList(Act act, const std::filesystem::path& file);
 
-  /// `now_s`: wall clock, the same in all calls.
+  /// Adds a fault. `now_s`: wall clock, the same in all calls.
   void add(const Fault& fault, double now_s, bench_lines::Acknowledge acknowledge = {});
 
-  /// Before a robot cycle, from 1.
+  /// Begins the faults that are due before a robot cycle, from 1.
   void begin_cycle(std::uint64_t cycle, double now_s);
-  /// After the exposure with this number, from 0.
+  /// Counts the exposure with this number, from 0, after it has ended.
   void end_exposure(std::uint64_t image, double now_s);
-  /// After a frame of motion capture.
+  /// Counts a frame of motion capture, after it was sent.
   void vicon_frame_sent();
-  /// In between: ends faults whose seconds have passed.
+  /// Ends faults whose seconds have passed, in between.
   void advance(double now_s);
 
  private:

@@ -15,7 +15,7 @@ namespace asio = boost::asio;
 using asio::ip::udp;
 using boost::system::error_code;
 
-// A flood does not hold the bench for ever.
+// A flood does not hold the emulator for ever.
 constexpr int kMaxDatagramsOfCycle = 10000;
 
 }  // namespace

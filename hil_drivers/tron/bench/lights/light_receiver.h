@@ -1,5 +1,5 @@
 #pragma once
-// The lights of the emulated bench on the network: a UDP port that the bench empties at the beginning of each robot
+// Lights of the emulator on the network: a UDP port that the emulator empties at the beginning of each robot
 // cycle, so that a packet sent before an answer acts before the cycle of that answer.
 
 #include <cstdint>
@@ -22,11 +22,11 @@ class LightReceiver {
   LightReceiver(const LightReceiver&) = delete;
   LightReceiver& operator=(const LightReceiver&) = delete;
 
-  /// Takes what has arrived, forgets silent sources and moves the lamp. Without a source the lights are off.
+  /// Processes what has arrived, drops silent sources and moves the lamp. Without a source the lights are off.
   void begin_cycle(double bench_s);
 
   [[nodiscard]] std::uint16_t port() const;
-  /// "127.0.20.4:40001", for addresses.json.
+  /// Returns the address for addresses.json: "127.0.20.4:40001".
   [[nodiscard]] std::string address() const;
   [[nodiscard]] const SourceCounts& counts() const;
 

@@ -1,5 +1,5 @@
 #pragma once
-// Lamp and boxes of the emulated bench as they really are: how much light each gives at a value, and where the lamp is
+// Lamp and boxes of the emulator as they really are: the light of each at a value, and the place of the lamp
 // on its arc.
 
 #include <array>
@@ -10,20 +10,20 @@
 
 namespace vbar::tron::bench {
 
-/// In the order of the slots: lamp power, lamp place, boxes.
+/// Holds values in the order of the slots: lamp power, lamp place, boxes.
 using LightValues = std::array<std::uint16_t, 2 + kBoxes>;
 
-/// Light of a source at a share v of its largest value: gain v^gamma, relative to full power as designed.
+/// Describes the light of a source at a share v of its largest value: gain v^gamma, relative to full power as designed.
 struct LightErrorSizes {
   double gamma = 2.2;          ///< mean over the sources
   double gamma_spread = 0.15;  ///< standard deviation over the sources
   double gain_spread = 0.03;
 
-  /// Light is proportional to the value.
+  /// Returns sizes with light proportional to the value.
   [[nodiscard]] static LightErrorSizes none() { return {1.0, 0.0, 0.0}; }
 };
 
-/// A key of the table [lights] of the emulated bench.
+/// Describes a key of the table [lights] of the emulator.
 struct LightErrorKey {
   std::string_view key;
   double LightErrorSizes::*size;
@@ -44,17 +44,17 @@ struct TrueLights {
 
 class LightRig {
  public:
-  /// The lamp is in the middle of its arc; all lights are off.
+  /// Begins with the lamp in the middle of its arc and all lights off.
   LightRig(const Lamp& lamp, const LightErrorSizes& sizes, std::uint64_t seed);
 
-  /// Powers take effect at once; the lamp begins to move.
+  /// Sets values: powers take effect at once; the lamp begins to move.
   void command(const LightValues& values);
-  /// All powers zero; the lamp stays where it is.
+  /// Sets all powers to zero; the lamp stays where it is.
   void switch_off();
-  /// Moves the lamp until then.
+  /// Moves the lamp until that time.
   void advance(double bench_s);
 
-  // Faults, until they are taken back.
+  // Set faults, until they are reset.
   void set_lamp_out(bool is_out) { is_lamp_out_ = is_out; }
   void set_box_out(std::size_t box, bool is_out) { is_box_out_.at(box) = is_out; }
 

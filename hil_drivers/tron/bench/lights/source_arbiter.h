@@ -1,7 +1,7 @@
 #pragma once
-// Which source of sACN controls the lights, by the rules of ANSI E1.31-2018: priority (6.2.3), sequence (6.7.2),
-// termination (6.2.6) and loss of a source (6.7.1). Of sources of the same priority the one that was first controls.
-// Time is bench time.
+// Choice of the source of sACN that controls the lights, by the rules of ANSI E1.31-2018: priority (6.2.3), sequence
+// (6.7.2), termination (6.2.6) and loss of a source (6.7.1). Of sources of the same priority the one that was first
+// controls. Time is bench time.
 
 #include <cstdint>
 #include <span>
@@ -32,7 +32,7 @@ class SourceArbiter {
 
   void accept(const sacn::DataPacket& packet, double bench_s);
   void count_unreadable() { ++counts_.unreadable; }
-  /// Forgets sources that are silent.
+  /// Drops sources that are silent.
   void advance(double bench_s);
 
   /// Returns the slots of the source that controls; empty if there is none.

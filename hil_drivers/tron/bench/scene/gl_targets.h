@@ -1,5 +1,5 @@
 #pragma once
-// What the laboratory is drawn into. All need their context to be current, as those of gl_objects.h.
+// Targets of the drawing. All need their context to be current, as those of gl_objects.h.
 
 #include <vector>
 
@@ -9,7 +9,7 @@ namespace vbar::tron::bench {
 
 using namespace opengl;
 
-/// A square of one float a texel with four samples a texel, of which a corner is used.
+/// Holds a square of one float a texel with four samples a texel, of which a corner is used.
 class Canvas {
  public:
   explicit Canvas(int size);
@@ -18,7 +18,7 @@ class Canvas {
   Canvas& operator=(const Canvas&) = delete;
 
   void bind_and_clear(int width, int height) const;
-  /// Means of the samples, rows from the lowest clip-space y.
+  /// Reads means of the samples, rows from the lowest clip-space y.
   void read(int width, int height, std::vector<float>& texels) const;
   [[nodiscard]] int size() const { return size_; }
 
@@ -28,7 +28,7 @@ class Canvas {
   int size_;
 };
 
-/// Eight maps of depths in a texture, 4 x 2 of them.
+/// Holds eight maps of depths in a texture, 4 x 2 of them.
 class ShadowMaps {
  public:
   static constexpr int kCount = 8, kAcross = 4, kDown = 2;

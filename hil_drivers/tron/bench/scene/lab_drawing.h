@@ -23,11 +23,12 @@ class LabDrawing {
   LabDrawing(const LabDrawing&) = delete;
   LabDrawing& operator=(const LabDrawing&) = delete;
 
-  /// Means over the pixels of `area`, which need not be on the detector, in units of unit(). Returns the distance of
-  /// the target's or board's middle. Throws std::invalid_argument if the camera is inside the sphere around it.
+  /// Computes means over the pixels of `area`, which need not be on the detector, in units of unit(). Returns the
+  /// distance of the target's or board's middle. Throws std::invalid_argument if the camera is inside the sphere around
+  /// it.
   double draw(const LabView& view, const twins::camera::Region& area, Plane& plane);
 
-  /// Photons/(m^2 s sr) of the last drawing.
+  /// Returns the unit, photons/(m^2 s sr), of the last drawing.
   [[nodiscard]] double unit() const;
 
  private:

@@ -21,13 +21,13 @@ class LabRenderer {
   LabRenderer(const LabRenderer&) = delete;
   LabRenderer& operator=(const LabRenderer&) = delete;
 
-  /// Expected photo-electrons of the region that is read; valid until the next call. Same bits for the same view on
-  /// the same processor. From any thread, one call at a time. Throws std::invalid_argument, naming what is wrong, if a
-  /// number is not finite or not possible, a pose is not a rigid one, or the camera is inside the sphere around the
-  /// target.
+  /// Returns expected photo-electrons of the region that is read; valid until the next call. Same bits for the same
+  /// view on the same processor. From any thread, one call at a time. Throws std::invalid_argument, naming what is
+  /// wrong, if a number is not finite or not possible, a pose is not a rigid one, or the camera is inside the sphere
+  /// around the target.
   const twins::camera::PhotonImage& expected(const LabView& view);
 
-  /// The region as the detector reads it, rows from the top. Throws as expected().
+  /// Returns the region as the detector reads it, rows from the top. Throws as expected().
   std::vector<std::uint16_t> expose(const LabView& view);
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// What a camera in the emulated laboratory sees: true poses, lights and lens at the instant of an exposure.
+// View of a camera in the emulated laboratory: true poses, lights and lens at the instant of an exposure.
 
 #include <array>
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace vbar::tron::bench {
 
-/// A link of an arm, or anything else of this shape: a cylinder with hemispherical ends.
+/// Describes a link of an arm, or anything else of this shape: a cylinder with hemispherical ends.
 struct Limb {
   fsw::Vector3 from_m = fsw::Vector3::Zero(), to_m = fsw::Vector3::Zero();  ///< middles of the hemispheres, L
   double radius_m = 0.05;
@@ -36,8 +36,8 @@ struct LabView {
   std::int64_t frame = 0;                   ///< selects noise and flicker
 };
 
-/// Parts of the domain gap between the laboratory and the digital twin. With all of them off the image agrees with the
-/// digital twin's of the same scene.
+/// Holds the parts of the domain gap between the laboratory and the digital twin. With all of them off the image agrees
+/// with the digital twin's of the same scene.
 struct GapSettings {
   bool surfaces = true;     ///< materials, seams, printed cells and uneven albedo of the mock-up
   bool shape = true;        ///< corners of the mock-up 0.5 mm off

@@ -1,5 +1,6 @@
 #pragma once
-// From radiance to photo-electrons, pixel by pixel: solid angle of a pixel (distortion included) times transmission.
+// Conversion of radiance to photo-electrons, pixel by pixel: solid angle of a pixel (distortion included) times
+// transmission.
 
 #include <vector>
 
@@ -13,7 +14,7 @@ class LensMap {
   LensMap(const twins::camera::CameraSettings& settings, const twins::camera::Region& area);
 
   [[nodiscard]] bool is_of(const twins::camera::CameraSettings& settings, const twins::camera::Region& area) const;
-  /// Photo-electrons a second per unit of radiance, photons/(m^2 s sr); rows from the top.
+  /// Returns photo-electrons a second per unit of radiance, photons/(m^2 s sr); rows from the top.
   [[nodiscard]] const std::vector<float>& electrons_per_radiance() const { return map_; }
 
  private:

@@ -17,7 +17,7 @@ inline constexpr double kBeamDivergenceRad = 0.03490658503988659154;  ///< at th
 inline constexpr double kBeamUnevenness = 0.10;                       ///< largest, within the beam
 inline constexpr double kFlicker = 0.01;                              ///< 1 sigma, of an image
 
-/// The lamp's light. Parallel and without edge if `inverse_distance` and `radius_m` are zero.
+/// Describes the lamp's light. Parallel and without edge if `inverse_distance` and `radius_m` are zero.
 struct LampBeam {
   fsw::Vector3 centre_m = fsw::Vector3::Zero();    ///< L, where the irradiance is `irradiance`
   fsw::Vector3 direction = fsw::Vector3::UnitX();  ///< from there to the lamp
@@ -29,24 +29,24 @@ struct LampBeam {
   double irradiance = 0.0;
 
   [[nodiscard]] fsw::Vector3 direction_at(const fsw::Vector3& point_L) const;
-  /// On an area that faces the lamp.
+  /// Returns the irradiance of an area that faces the lamp.
   [[nodiscard]] double irradiance_at(const fsw::Vector3& point_L) const;
 };
 
 inline constexpr double kBeamEdgeM = 0.015;  ///< half width of the edge of the beam
 
-/// `sun_photons`: of the Sun at 1 au. `L` frame.
+/// Returns the beam in frame L. `sun_photons`: light of the Sun at 1 au.
 [[nodiscard]] LampBeam lamp_beam(const BenchFile& bench, const GapSettings& gap, std::uint64_t seed,
                                  const LabView& view, double sun_photons);
 
-/// A part of a box: a small Lambert emitter.
+/// Describes a part of a box: a small Lambert emitter.
 struct Emitter {
   fsw::Vector3 place_m;
   fsw::Vector3 normal;
   double radiance_area = 0.0;  ///< photons/(s sr)
 };
 
-/// A rectangle of even radiance.
+/// Describes a rectangle of even radiance.
 struct BoxLight {
   fsw::Vector3 centre_m, normal, across, up;
   double half_side_m = 0.3;
@@ -56,14 +56,15 @@ struct BoxLight {
 [[nodiscard]] std::array<BoxLight, kBoxes> box_lights(const BenchFile& bench, const std::array<double, kBoxes>& powers,
                                                       double sun_photons);
 
-/// Gauss's four points of a box of 0.6 m: its light to 0.4 % at 1 m, falling with the fourth power of the distance.
+/// Returns Gauss's four points of a box of 0.6 m: its light to 0.4 % at 1 m, falling with the fourth power of the
+/// distance.
 [[nodiscard]] std::array<Emitter, 4> emitters_of(const BoxLight& box);
 
 /// Returns the irradiance of an area; without anything in between.
 [[nodiscard]] double irradiance_of(const BoxLight& box, const fsw::Vector3& place_m, const fsw::Vector3& normal);
 
-/// Vector of irradiance at a place: its component along a unit vector is the irradiance of an area that faces there
-/// less that of its back.
+/// Returns the vector of irradiance at a place: its component along a unit vector is the irradiance of an area that
+/// faces there less that of its back.
 [[nodiscard]] fsw::Vector3 light_vector(const std::array<BoxLight, kBoxes>& boxes, const fsw::Vector3& place_m);
 
 }  // namespace vbar::tron::bench

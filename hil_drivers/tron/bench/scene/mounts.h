@@ -1,5 +1,5 @@
 #pragma once
-// What holds the target, and where the camera is in its own way.
+// Bodies that hold the target, and those of the camera's own arm in its view.
 
 #include <vector>
 
@@ -7,8 +7,8 @@
 
 namespace vbar::tron::bench {
 
-/// The arms' limbs, the rod between flange and target (or board) and the pedestal. Without those that surround the
-/// camera, such as its own housing.
+/// Returns the arms' limbs, the rod between flange and target (or board) and the pedestal, without those that surround
+/// the camera, such as its own housing.
 [[nodiscard]] std::vector<Limb> limbs_in_view(const BenchFile& bench, const LabView& view);
 
 }  // namespace vbar::tron::bench

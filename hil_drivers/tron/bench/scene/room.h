@@ -1,6 +1,6 @@
 #pragma once
-// The room: walls of low albedo lit by lamp and boxes, the boxes themselves, and what of that light comes back to the
-// target.
+// Room: walls of low albedo lit by lamp and boxes, the boxes themselves, and the part of that light that comes back to
+// the target.
 
 #include <array>
 #include <vector>
@@ -19,12 +19,12 @@ class Room {
  public:
   explicit Room(const BenchFile& bench);
 
-  /// For an attribute each: corner; normal; albedo, irradiance by the boxes, emitted radiance. Relative to `origin`.
+  /// Widths of the attributes: corner; normal; albedo, irradiance by the boxes, emitted radiance. Relative to `origin`.
   static constexpr std::array<int, 3> kWidths{3, 3, 3};
   [[nodiscard]] std::vector<float> corners(const std::array<BoxLight, kBoxes>& boxes, const fsw::Vector3& origin,
                                            double unit) const;
 
-  /// Irradiance by reflected light at a place of areas that face +x, -x, +y, -y, +z, -z.
+  /// Returns the irradiance by reflected light at a place of areas that face +x, -x, +y, -y, +z, -z.
   [[nodiscard]] std::array<double, 6> reflected(const LampBeam& beam, const std::array<BoxLight, kBoxes>& boxes,
                                                 const fsw::Vector3& place_m) const;
 

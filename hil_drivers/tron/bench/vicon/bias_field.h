@@ -1,5 +1,5 @@
 #pragma once
-// A random vector field of zero mean over places and directions: what motion capture is off by, the same whenever an
+// Random vector field of zero mean over places and directions: the bias of motion capture, the same whenever an
 // object returns to a pose, and different elsewhere.
 
 #include <array>
@@ -12,14 +12,14 @@
 
 namespace vbar::tron::bench {
 
-/// Sum of plane waves of random phase, whose wave vectors are normal: its covariance falls with distance as a Gaussian
+/// Sums plane waves of random phase, whose wave vectors are normal: its covariance falls with distance as a Gaussian
 /// (Rahimi and Recht 2007, "Random features for large-scale kernel machines").
 class BiasField {
  public:
   using Place = Eigen::Matrix<double, 9, 1>;
 
-  /// `sigma`: standard deviation of each component. `length`: of the correlation along each component of a place;
-  /// infinite: the field does not depend on it.
+  /// Draws the field. `sigma`: standard deviation of each component. `length`: of the correlation along each component
+  /// of a place; infinite: the field does not depend on it.
   BiasField(std::uint64_t seed, const std::string& stream, double sigma, const Place& length);
 
   [[nodiscard]] fsw::Vector3 at(const Place& place) const;

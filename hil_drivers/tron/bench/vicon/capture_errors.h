@@ -1,7 +1,7 @@
 #pragma once
-// What motion capture of the emulated bench states of an object whose true pose is known: its frame V, the object's own
+// Poses that the emulator's motion capture states for an object whose true pose is known: its frame V, the object's own
 // axes, bias and noise. All are functions of the seed, the pose and the frame number; neither driver nor calibration
-// reads any of it.
+// reads any of them.
 
 #include <array>
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace vbar::tron::bench {
 enum class CaptureObject : std::size_t { kCamera = 0, kTarget = 1 };
 inline constexpr std::size_t kCaptureObjects = 2;
 
-/// One standard deviation of each error; defaults are those of data/benches/tron_emulated.toml.
+/// Holds one standard deviation of each error; defaults are those of data/benches/tron_emulated.toml.
 struct CaptureErrorSizes {
   double frame_rotation_deg = 2.0;  ///< rotation of V from the laboratory's frame, each axis
   double frame_translation_mm = 50.0;
@@ -30,11 +30,11 @@ struct CaptureErrorSizes {
   double noise_mm = 0.05;               ///< noise of a frame, each axis
   double noise_deg = 0.02;
 
-  /// Frame and axes of the objects as well are those of the laboratory, of camera and target.
+  /// Returns sizes without errors: the frame and the objects' axes are those of the laboratory, of camera and target.
   [[nodiscard]] static CaptureErrorSizes none();
 };
 
-/// A key of the table [vicon] of the emulated bench.
+/// Describes a key of the table [vicon] of the emulator.
 struct CaptureErrorKey {
   std::string_view key;
   double CaptureErrorSizes::*size;
@@ -58,11 +58,12 @@ class CaptureErrors {
  public:
   CaptureErrors(const CaptureErrorSizes& sizes, std::uint64_t seed);
 
-  /// Pose of the object in V as frame number `frame` states it; `T_L_body`: true pose of the camera or the target.
+  /// Returns the pose of the object in V as frame number `frame` states it; `T_L_body`: true pose of the camera or the
+  /// target.
   [[nodiscard]] Eigen::Isometry3d stated(CaptureObject object, const Eigen::Isometry3d& T_L_body,
                                          std::uint64_t frame) const;
 
-  // For evaluations of the bench.
+  // Returns the true frame, for evaluations of the emulator.
   [[nodiscard]] const Eigen::Isometry3d& T_V_L() const { return T_V_L_; }
   [[nodiscard]] const Eigen::Isometry3d& T_body_object(CaptureObject object) const {
     return T_body_object_[static_cast<std::size_t>(object)];

@@ -46,7 +46,7 @@ struct ObjectStreamSender::State {
     if (error) throw std::runtime_error(fmt::format("motion capture to {}: {}", settings.address, error.message()));
     computer = {address, settings.vicon.port};
     (void)vicon::encode_frame({0, {{settings.vicon.camera_object}, {settings.vicon.target_object}}},
-                              settings.block_bytes);  // refuses names and sizes
+                              settings.block_bytes);  // rejects names and sizes
   }
 
   std::optional<vicon::TrackedObject> stated(Object& object) const {
@@ -71,7 +71,7 @@ struct ObjectStreamSender::State {
     for (Object& object : objects)
       if (auto tracked = stated(object)) frame.objects.push_back(*std::move(tracked));
     for (const vicon::Bytes& block : vicon::encode_frame(frame, settings.block_bytes)) {
-      error_code ignored;  // nobody listens: as a real one
+      error_code ignored;  // no listener: as a real one
       socket.send_to(asio::buffer(block), computer, 0, ignored);
     }
     ++sent;

@@ -1,5 +1,5 @@
 #pragma once
-// The object stream of the emulated bench: frames at the rate of motion capture in bench time, with errors and faults.
+// Object stream of the emulator: frames at the rate of motion capture in bench time, with errors and faults.
 
 #include <array>
 #include <cstdint>
@@ -24,7 +24,7 @@ struct ObjectStreamSettings {
 
 class ObjectStreamSender {
  public:
-  /// True pose of camera or target in L; nothing while the cameras cannot track it.
+  /// Returns the true pose of camera or target in L; nothing while the cameras cannot track it.
   using TruePose = std::function<std::optional<Eigen::Isometry3d>(CaptureObject)>;
 
   /// Throws std::runtime_error, std::invalid_argument.
@@ -34,11 +34,11 @@ class ObjectStreamSender {
   ObjectStreamSender(const ObjectStreamSender&) = delete;
   ObjectStreamSender& operator=(const ObjectStreamSender&) = delete;
 
-  /// Sends the frames that are due until `bench_s`, all of the poses now, and returns their number. Nobody has to
-  /// listen.
+  /// Sends the frames that are due until `bench_s`, all of the poses now, and returns their number. A listener is not
+  /// needed.
   int tick(double bench_s);
 
-  // Faults, until they are taken back.
+  // Set faults, until they are reset.
   void set_hidden(CaptureObject object, bool is_hidden);   ///< not in the frames
   void set_zeros(CaptureObject object, bool is_zero);      ///< as if occluded
   void set_frozen(CaptureObject object, bool is_frozen);   ///< keeps its numbers

@@ -11,15 +11,15 @@
 
 namespace vbar::tron::bench {
 
-/// A small pose: rotation vector and translation, each component normal. The same stream with other sizes gives the
-/// same error, scaled.
+/// Returns a small pose: rotation vector and translation, each component normal. The same stream with other sizes gives
+/// the same error, scaled.
 [[nodiscard]] Eigen::Isometry3d drawn_pose(std::uint64_t seed, const std::string& stream, double rotation_deg,
                                            double translation_mm);
 
-/// A random function of place of zero mean: two sinusoids of random wavelength.
+/// Describes a random function of place of zero mean: two sinusoids of random wavelength.
 class Wave {
  public:
-  /// `sigma`: standard deviation at any place, over benches.
+  /// Draws the function. `sigma`: standard deviation at any place, over emulators.
   Wave(std::uint64_t seed, const std::string& stream, double sigma, double wavelength_low, double wavelength_high);
   [[nodiscard]] double at(double place) const;
 

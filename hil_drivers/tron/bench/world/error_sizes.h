@@ -1,13 +1,14 @@
 #pragma once
-// How far an emulated bench is from the laboratory as designed: one standard deviation of each hidden error. Each error
-// is drawn once from the seed, in a random stream of its own name. Neither driver nor calibration reads any of it.
+// Differences between an emulator and the laboratory as designed: one standard deviation of each hidden error. Each
+// error is drawn once from the seed, in a random stream of its own name. Neither driver nor calibration reads any of
+// them.
 
 #include <array>
 #include <string_view>
 
 namespace vbar::tron::bench {
 
-/// Defaults are those of data/benches/tron_emulated.toml.
+/// Holds the sizes; defaults are those of data/benches/tron_emulated.toml.
 struct ErrorSizes {
   // Arms.
   double joint_offset_deg = 0.15;
@@ -35,11 +36,11 @@ struct ErrorSizes {
   double principal_point_px = 4.0;
   double distortion = 0.03;  ///< error of each coefficient, relative
 
-  /// A bench exactly as designed.
+  /// Returns sizes of a testbed exactly as designed.
   [[nodiscard]] static ErrorSizes none();
 };
 
-/// A key of the table [errors].
+/// Describes a key of the table [errors].
 struct ErrorKey {
   std::string_view key;
   double ErrorSizes::*size;

@@ -1,5 +1,5 @@
 #pragma once
-// An arm as it really is: offsets and gear errors of its joints, errors of its links, its bending under gravity. Its
+// Arm as it really is: offsets and gear errors of its joints, errors of its links, its bending under gravity. Its
 // forward kinematics shares no code with the driver's.
 
 #include <array>
@@ -16,13 +16,13 @@ namespace vbar::tron::bench {
 
 class TrueArm {
  public:
-  /// `up`: +1 for an arm that stands, -1 for one that hangs. `name` names the random streams.
+  /// Draws the errors. `up`: +1 for an arm that stands, -1 for one that hangs. `name` names the random streams.
   TrueArm(const ArmDesign& design, double up, const ErrorSizes& sizes, std::uint64_t seed, const std::string& name);
 
-  /// At the joints that the encoders state.
+  /// Returns the pose at the joints that the encoders state.
   [[nodiscard]] Eigen::Isometry3d T_base_flange(const Joints& encoder_rad) const;
 
-  /// What the joints deviate from their encoders at standstill number `number`.
+  /// Returns the deviation of the joints from their encoders at standstill number `number`.
   [[nodiscard]] Joints repeatability_rad(std::uint64_t number) const;
 
  private:
@@ -36,7 +36,7 @@ class TrueArm {
     Eigen::Isometry3d error_after = Eigen::Isometry3d::Identity();
   };
   [[nodiscard]] Joints true_angles(const Joints& encoder_rad) const;
-  /// Horizontal distance, in the arm's plane, of the wrist from the axis of A2 and of A3, m.
+  /// Returns the horizontal distance, in the arm's plane, of the wrist from the axis of A2 and of A3, m.
   [[nodiscard]] std::array<double, 2> levers_m(const Joints& angles_rad) const;
 
   std::array<Joint, kJoints> joints_;

@@ -1,5 +1,5 @@
 #pragma once
-// The track as it really is: its scale, and how the carriage is displaced and turned along it.
+// Track as it really is: its scale, and the displacement and rotation of the carriage along it.
 
 #include <cstdint>
 
@@ -13,14 +13,14 @@ namespace vbar::tron::bench {
 
 class TrueTrack {
  public:
-  /// `base`: of the arm with the carriage at 0.
+  /// Draws the errors. `base`: of the arm with the carriage at 0.
   TrueTrack(const Track& design, const BasePose& base, const ErrorSizes& sizes, std::uint64_t seed);
 
-  /// Base of the arm with the carriage at the place that its encoder states, m along L x. It turns about the plate by
-  /// which the arm hangs.
+  /// Returns the base of the arm with the carriage at the place that its encoder states, m along L x. It rotates about
+  /// the plate by which the arm hangs.
   [[nodiscard]] Eigen::Isometry3d T_L_base(double encoder_m) const;
 
-  /// What the carriage deviates from its encoder at standstill number `number`, m.
+  /// Returns the deviation of the carriage from its encoder at standstill number `number`, m.
   [[nodiscard]] double repeatability_m(std::uint64_t number) const;
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-// Which objects the cameras of motion capture see. Twelve cameras under the ceiling, six along each side wall. An
-// object carries markers; a marker is located by the cameras in whose field it is and whose line of sight no arm, no
+// Visibility of objects to the cameras of motion capture. Twelve cameras under the ceiling, six along each side wall.
+// An object carries markers; a marker is located by the cameras in whose field it is and whose line of sight no arm, no
 // body and no plate crosses; an object is tracked with three markers.
 
 #include <array>
@@ -13,13 +13,13 @@
 
 namespace vbar::tron::bench {
 
-/// A body that hides markers: a line with a radius, L.
+/// Describes a body that hides markers: a line with a radius, L.
 struct Capsule {
   fsw::Vector3 from = fsw::Vector3::Zero(), to = fsw::Vector3::Zero();
   double radius_m = 0.0;
 };
 
-/// A body that hides markers: a box about the origin of its frame.
+/// Describes a body that hides markers: a box about the origin of its frame.
 struct Block {
   Eigen::Isometry3d T_L_block = Eigen::Isometry3d::Identity();
   fsw::Vector3 low_m = fsw::Vector3::Zero(), high_m = fsw::Vector3::Zero();
@@ -38,7 +38,7 @@ class ViconVisibility {
 
   explicit ViconVisibility(const BenchFile& laboratory);
 
-  /// Markers located by at least kMinCameras.
+  /// Returns the number of markers located by at least kMinCameras.
   [[nodiscard]] std::size_t located(const Eigen::Isometry3d& T_L_object, const std::vector<Marker>& markers,
                                     const std::vector<Capsule>& capsules, const std::vector<Block>& blocks) const;
 
@@ -48,10 +48,10 @@ class ViconVisibility {
   std::array<fsw::Vector3, kCameras> cameras_;
 };
 
-/// Markers on the corners of a box and the middles of its faces.
+/// Returns markers on the corners of a box and the middles of its faces.
 [[nodiscard]] std::vector<Marker> markers_of_box(const fsw::Vector3& low_m, const fsw::Vector3& high_m);
 
-/// Whether the segment passes through the body.
+/// Returns true if the segment passes through the body.
 [[nodiscard]] bool crosses(const fsw::Vector3& from, const fsw::Vector3& to, const Capsule& capsule);
 [[nodiscard]] bool crosses(const fsw::Vector3& from, const fsw::Vector3& to, const Block& block);
 

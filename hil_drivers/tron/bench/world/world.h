@@ -1,5 +1,5 @@
 #pragma once
-// The emulated bench as it really is: where camera and target are at a posture of the axes, and the true lens.
+// Emulated testbed as it really is: the poses of camera and target at a posture of the axes, and the true lens.
 // The hidden errors are functions of the seed alone.
 
 #include <array>
@@ -16,17 +16,17 @@
 
 namespace vbar::tron::bench {
 
-/// What hangs on the plate of the target's arm.
+/// Names what hangs on the plate of the target's arm.
 enum class Mounted { kTarget, kBoard, kPatch };
 inline constexpr std::size_t kMountedThings = 3;
 
 class World {
  public:
-  /// `T_flange_mounted`: as designed, in the order of Mounted.
+  /// Draws the hidden errors. `T_flange_mounted`: as designed, in the order of Mounted.
   World(const BenchFile& laboratory, const std::array<Eigen::Isometry3d, kMountedThings>& T_flange_mounted,
         const ErrorSizes& sizes, std::uint64_t seed);
 
-  // What the axes deviate from their encoders at the standstill of a robot with this number.
+  // Returns the deviation of the axes from their encoders at the standstill of a robot with this number.
   [[nodiscard]] Joints camera_arm_deviation_rad(std::uint64_t standstill) const {
     return camera_arm_.repeatability_rad(standstill);
   }
@@ -37,14 +37,14 @@ class World {
     return target_arm_.repeatability_rad(standstill);
   }
 
-  // By the places of the axes: encoders and these deviations.
+  // Return poses by the places of the axes: encoders and these deviations.
   [[nodiscard]] Eigen::Isometry3d T_L_camera_base(const Posture& posture) const;
   [[nodiscard]] const Eigen::Isometry3d& T_L_target_base() const { return T_L_target_base_; }
   [[nodiscard]] Eigen::Isometry3d T_L_C(const Posture& posture) const;
   [[nodiscard]] Eigen::Isometry3d T_L_mounted(const Posture& posture, Mounted mounted) const;
   [[nodiscard]] Eigen::Isometry3d T_C_mounted(const Posture& posture, Mounted mounted) const;
 
-  /// What hangs on the plate has slipped along its x.
+  /// Slips what hangs on the plate along its x.
   void slip(double x_m);
 
  private:
@@ -55,7 +55,7 @@ class World {
   std::array<Eigen::Isometry3d, kMountedThings> T_flange_mounted_;
 };
 
-/// The lens as it really is.
+/// Returns the lens as it really is.
 [[nodiscard]] twins::camera::CameraSettings with_lens_errors(const twins::camera::CameraSettings& design,
                                                              const ErrorSizes& sizes, std::uint64_t seed);
 

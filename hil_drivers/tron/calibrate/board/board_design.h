@@ -26,32 +26,32 @@ struct BoardDesign {
 
   [[nodiscard]] double width_m() const { return columns * square_m; }
   [[nodiscard]] double height_m() const { return rows * square_m; }
-  /// Inner corners of the squares.
+  /// Returns the number of inner corners of the squares.
   [[nodiscard]] int corner_count() const { return (columns - 1) * (rows - 1); }
   /// Returns a corner by its number, row by row from the upper left one, in B.
   [[nodiscard]] fsw::Vector3 corner(int id) const;
-  /// Corners of the white patch in B: upper left, upper right, lower right, lower left, 5 mm off its edges.
+  /// Returns the corners of the white patch in B: upper left, upper right, lower right, lower left, 5 mm off its edges.
   [[nodiscard]] std::array<fsw::Vector3, 4> patch() const;
 };
 
-/// A rectangle of the board, corners in B (z = 0): upper left, upper right, lower right, lower left.
+/// Holds a rectangle of the board, corners in B (z = 0): upper left, upper right, lower right, lower left.
 struct BoardQuad {
   std::array<fsw::Vector3, 4> corners_B;
   bool is_white = false;
 };
 
-/// All of the plate's front, without gap or overlap. Only edges of white to black matter; where a rectangle's corner is
-/// on the edge of another a renderer may need the plate behind.
+/// Returns all of the plate's front, without gap or overlap. Only edges of white to black matter; where a rectangle's
+/// corner is on the edge of another a renderer may need the plate behind.
 [[nodiscard]] std::vector<BoardQuad> board_quads(const BoardDesign& design = {});
 
-/// The plate's front as one rectangle.
+/// Returns the plate's front as one rectangle.
 [[nodiscard]] BoardQuad board_plate(const BoardDesign& design = {});
 
-/// T_F_B as designed: at the stand-off of the mock-up's face.
+/// Returns T_F_B as designed: at the stand-off of the mock-up's face.
 [[nodiscard]] Eigen::Isometry3d T_flange_board(const BenchFile& bench);
 
-/// T_T_B: exact, since the board is held by the same mount as the mock-up. With the bench's true mount X_T the board is
-/// at T_flange_T T_T_B.
+/// Returns T_T_B, which is exact, since the board is held by the same mount as the mock-up. With the testbed's true
+/// mount X_T the board is at T_flange_T T_T_B.
 [[nodiscard]] Eigen::Isometry3d T_target_board(const BenchFile& bench);
 
 }  // namespace vbar::tron::calibrate

@@ -1,5 +1,5 @@
 #pragma once
-// The raw data of a calibration, from which a fit can be repeated.
+// Raw data of a calibration, from which a fit can be repeated.
 
 #include <cstdint>
 #include <filesystem>
@@ -33,7 +33,7 @@ struct CalibrationData {
   DarkFigures dark;
 };
 
-/// JSON, one measurement a line; numbers read back as the same bits.
+/// Returns JSON, one measurement a line; numbers read back as the same bits.
 [[nodiscard]] std::string text_of(const CalibrationData& data);
 void save_data(const CalibrationData& data, const std::filesystem::path& file);
 
@@ -41,9 +41,9 @@ void save_data(const CalibrationData& data, const std::filesystem::path& file);
 [[nodiscard]] CalibrationData parse_data(std::string_view text, const std::string& file);
 [[nodiscard]] CalibrationData load_data(const std::filesystem::path& file);
 
-/// Gives the measurements the true poses of an emulated bench, from the table of its exposures (truth.csv): those of
-/// the board, found by their postures. Throws std::runtime_error, which names the file, if it is damaged; returns how
-/// many measurements were found in it.
+/// Adds the true poses of an emulator to the measurements, from the table of its exposures (truth.csv): the poses of
+/// the board, found by their postures. Throws std::runtime_error, which names the file, if it is damaged; returns the
+/// number of measurements found in the table.
 int add_truth(std::vector<Measurement>& measurements, const std::filesystem::path& truth,
               const Eigen::Isometry3d& T_target_board);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What calibration measures at a posture of the bench.
+// Measurements of a calibration at a posture of the testbed.
 
 #include <optional>
 #include <string>
@@ -12,13 +12,13 @@
 
 namespace vbar::tron::calibrate {
 
-/// A corner of the board in an image.
+/// Holds a corner of the board in an image.
 struct Corner {
   int id = 0;  ///< BoardDesign::corner()
   fsw::Vector2 px = fsw::Vector2::Zero();
 };
 
-/// Objects of motion capture, averaged at rest; rotations by the order of the bench file.
+/// Holds the poses of the objects of motion capture, averaged at rest; rotations by the order of the bench file.
 struct ViconObjects {
   Eigen::Isometry3d T_V_camera = Eigen::Isometry3d::Identity(), T_V_target = Eigen::Isometry3d::Identity();
 };
@@ -31,8 +31,8 @@ struct Measurement {
   std::optional<Eigen::Isometry3d> true_T_C_T;
 };
 
-/// The same pose if its three angles, which were taken as rotations in the order `from`, are in the order `to` ("xyz":
-/// Rx Ry Rz).
+/// Returns the pose whose three angles, which were taken as rotations in the order `from`, are in the order `to`
+/// ("xyz": Rx Ry Rz).
 [[nodiscard]] Eigen::Isometry3d reordered(const Eigen::Isometry3d& pose, const std::string& from,
                                           const std::string& to);
 

@@ -1,4 +1,4 @@
-// True poses of an emulated bench for measurements.
+// True poses of an emulator for measurements.
 
 #include <charconv>
 #include <cmath>

@@ -21,14 +21,14 @@ struct BoardPose {
   double sigma_px = 0.0;  ///< standard deviation of a corner of this image: rms_px, at least kCornerSigma_px
 };
 
-/// Gauss-Newton with Huber's weights from `start`; null with fewer than kMinCorners corners or where it does not
-/// converge.
+/// Refines the pose by Gauss-Newton with Huber's weights from `start`; null with fewer than kMinCorners corners or
+/// where it does not converge.
 [[nodiscard]] std::optional<BoardPose> refine_board_pose(const BoardDesign& board, const LensCalibration& lens,
                                                          const std::vector<Corner>& corners,
                                                          const Eigen::Isometry3d& start);
 
-/// The best of the poses found from `start` and from its mirror image with the tilt reversed, the other minimum of a
-/// plane.
+/// Returns the best of the poses found from `start` and from its mirror image with the tilt reversed, the other minimum
+/// of a plane.
 [[nodiscard]] std::optional<BoardPose> board_pose(const BoardDesign& board, const LensCalibration& lens,
                                                   const std::vector<Corner>& corners, const Eigen::Isometry3d& start);
 

@@ -12,7 +12,7 @@
 
 namespace vbar::tron::calibrate {
 
-/// What of the arms is fitted, each with all before it.
+/// Names the parameters of the arms that are fitted, each stage with all before it.
 enum class FitStage { kLens, kMounts, kOffsets, kFlexAndTrack, kWholeChain };
 
 struct FitImage {
@@ -21,7 +21,7 @@ struct FitImage {
   double sigma_px = 0.3;                                    ///< standard deviation of its corners
 };
 
-/// Standard deviations of what is known before.
+/// Holds standard deviations of what is known before the fit.
 struct FitPriors {
   double focal_ratio = 5e-3, pixel_aspect = 1e-4, centre_px = 8.0, distortion_ratio = 0.05;
   double offset_rad = 8.7e-3;                 // 0.5 deg
@@ -51,18 +51,19 @@ struct FitResult {
   int iterations = 0;
 };
 
-/// From `start`; `T_target_board` places the board. Vicon's frames in `start` have to be near their answer.
+/// Fits all parameters from `start`; `T_target_board` places the board. Vicon's frames in `start` have to be near their
+/// answer.
 [[nodiscard]] FitResult fit_chain(const BoardDesign& board, const Eigen::Isometry3d& T_target_board,
                                   const std::vector<FitImage>& images, const Calibration& start,
                                   const FitSettings& settings);
 
-/// Covariance of the arms' T_C_T at a posture by that of the parameters: of [rotation, rad; translation, m] in camera
-/// axes.
+/// Returns the covariance of the arms' T_C_T at a posture by that of the parameters: [rotation, rad; translation, m] in
+/// camera axes.
 [[nodiscard]] Matrix6 posterior_of_arms(const FitResult& fit, const Posture& posture);
 
-/// The same of the difference of arms and motion capture: without what is common to both, such as the turn of the
-/// camera that a shift of the lens' centre looks like. Fusion weighs the sources by what they do not share. After a fit
-/// with motion capture only.
+/// Returns the covariance of the difference of arms and motion capture: without what is common to both, such as a
+/// rotation of the camera, which is equivalent to a shift of the lens' centre. Fusion weighs the sources by the errors
+/// that they do not share. It needs a fit with motion capture.
 [[nodiscard]] Matrix6 posterior_of_difference(const FitResult& fit, const Posture& posture);
 
 }  // namespace vbar::tron::calibrate

@@ -12,8 +12,8 @@ namespace vbar::tron::calibrate {
 
 struct PatchPosture {
   Posture posture;
-  /// Sources (photometric_table.h) to be measured here, and the irradiance of the patch by them at full power as
-  /// designed, to that of the lamp on an area that faces it.
+  /// Names the sources (photometric_table.h) to be measured here, and the irradiance of the patch by them at full power
+  /// as designed, to that of the lamp on an area that faces it.
   struct Light {
     std::size_t source = 0;
     double irradiance = 0.0;
@@ -24,7 +24,7 @@ struct PatchPosture {
 /// One flag a source.
 using SourceFlags = std::array<bool, kLightSources>;
 
-/// `lamp_azimuth_rad`: where the lamp stands meanwhile. All sources are covered but those of `measured`; throws
+/// Chooses postures for all sources but those of `measured`, while the lamp stands at `lamp_azimuth_rad`; throws
 /// std::runtime_error that names those for which no posture was found.
 [[nodiscard]] std::vector<PatchPosture> choose_patch_postures(const BenchFile& bench, const LensCalibration& lens,
                                                               const BoardDesign& board, double lamp_azimuth_rad,

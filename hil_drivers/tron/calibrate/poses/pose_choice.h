@@ -1,5 +1,5 @@
 #pragma once
-// Postures at which the camera sees the board, as different from each other as the bench permits.
+// Postures at which the camera sees the board, as different from each other as the testbed permits.
 
 #include <cstdint>
 #include <functional>
@@ -22,19 +22,19 @@ struct PoseGoals {
   double limit_margin_rad = 0.07;
 };
 
-/// True of a posture that may be used: no collision, cable not too much turned.
+/// Returns true for a posture that may be used: no collision, cable within its limit.
 using PostureFilter = std::function<bool(const Posture&)>;
 
-/// `count` postures by the chain as designed; ranges and carriage places are spread evenly, all else is random. Sorted
-/// along the track, so that moves are short. Throws std::runtime_error if the bench has too few such postures.
+/// Chooses `count` postures by the chain as designed; ranges and carriage places are spread evenly, all else is random.
+/// Sorted along the track, so that moves are short. Throws std::runtime_error if the testbed has too few such postures.
 [[nodiscard]] std::vector<Posture> choose_postures(const BenchFile& bench, const LensCalibration& lens,
                                                    const BoardDesign& board, int count, std::uint64_t seed,
                                                    const PoseGoals& goals = {}, const PostureFilter& filter = {});
 
-/// Free of collisions, the camera's cable within its limit.
+/// Returns a filter that accepts postures free of collisions, with the camera's cable within its limit.
 [[nodiscard]] PostureFilter free_postures(const BenchFile& bench);
 
-/// A frame with that z (unit), as R_L_frame; its x is level.
+/// Returns a frame with that z (unit), as R_L_frame; its x is level.
 [[nodiscard]] fsw::Matrix3 looking_along(const fsw::Vector3& z);
 
 }  // namespace vbar::tron::calibrate

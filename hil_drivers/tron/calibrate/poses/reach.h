@@ -1,5 +1,5 @@
 #pragma once
-// Joints for poses of camera and board in the laboratory, by the bench as designed.
+// Joints for poses of camera and board in the laboratory, by the testbed as designed.
 
 #include <optional>
 
@@ -11,10 +11,10 @@ namespace vbar::tron::calibrate {
 
 class Reach {
  public:
-  /// Branches keep `limit_margin_rad` from the limits of their axes.
+  /// Keeps all branches `limit_margin_rad` from the limits of their axes.
   Reach(const BenchFile& bench, double limit_margin_rad);
 
-  /// One of the branches that are within the limits, by chance.
+  /// Returns one of the branches that are within the limits, drawn at random.
   [[nodiscard]] std::optional<Posture> posture(const Eigen::Isometry3d& T_L_C, const Eigen::Isometry3d& T_L_B,
                                                double carriage_m, engine::RandomStream& random) const;
 

@@ -1,5 +1,5 @@
 #pragma once
-// What calibration needs of a bench, over its wires or simulated.
+// Interface of a testbed to its calibration, over its wires or simulated.
 
 #include <array>
 #include <cstdint>
@@ -12,10 +12,10 @@
 
 namespace vbar::tron::calibrate {
 
-/// What the plate of the target's arm carries.
+/// Names what the plate of the target's arm carries.
 enum class Mounted { kTarget, kBoard };
 
-/// Values of the lights, shares of the largest, not of light.
+/// Holds values of the lights, shares of the largest, not of light.
 struct LightShares {
   double lamp = 0.0;
   double lamp_azimuth_rad = 0.0;
@@ -37,7 +37,8 @@ struct BenchIdentity {
   bool is_emulated = false;
 };
 
-/// All functions throw std::runtime_error, one sentence that names the device, if the bench cannot go on.
+/// Gives a calibration access to a testbed. All functions throw std::runtime_error, one sentence that names the device,
+/// if the testbed cannot go on.
 class CalibrationBench {
  public:
   CalibrationBench() = default;
@@ -46,7 +47,7 @@ class CalibrationBench {
   virtual ~CalibrationBench() = default;
 
   [[nodiscard]] virtual BenchIdentity identity() = 0;
-  /// An emulated bench does it; in a laboratory the operator is asked to.
+  /// Mounts mock-up or board: an emulator does it by itself; at a real testbed the operator is asked to.
   virtual void mount(Mounted what) = 0;
   /// Moves and waits until the arms have settled; false: there is no way without a collision.
   [[nodiscard]] virtual bool move(const Posture& posture) = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Is a calibration still valid? A few postures measured once more.
+// Check of a calibration: a few postures measured once more.
 
 #include <string>
 #include <vector>

@@ -9,7 +9,7 @@
 namespace vbar::tron::calibrate {
 namespace {
 
-/// Pixels of the patch in the image, by the bench as designed, with the edges that its errors may move left out.
+/// Pixels of the patch in the image, by the testbed as designed, with the edges that its errors may move left out.
 struct PatchPixels {
   std::vector<std::size_t> at;
 
@@ -25,7 +25,7 @@ struct PatchPixels {
   }
 };
 
-/// The brightest window within reach of the designed place: a bench is off by degrees, the patch is the largest white
+/// The brightest window within reach of the designed place: a testbed is off by degrees, the patch is the largest white
 /// area there. `light`: an image with only one source on.
 PatchPixels find_patch(const BenchImage& image, const LensCalibration& lens, const BenchFile& file,
                        const BoardDesign& board, const Posture& posture) {

@@ -9,20 +9,20 @@
 
 namespace vbar::tron::calibrate {
 
-/// From images with all lights off: mean and, from differences of successive images, noise of a pixel.
+/// Returns the mean and, from differences of successive images, the noise of a pixel in images with all lights off.
 [[nodiscard]] DarkFigures measure_dark(CalibrationBench& bench, double exposure_s, int images = 4);
 
-/// Each source alone at `levels` levels up to the full one. A posture to which there is no way is left out.
+/// Measures each source alone at `levels` levels up to the full one. A posture to which there is no way is left out.
 [[nodiscard]] std::vector<LightSample> measure_lights(CalibrationBench& bench, const LensCalibration& lens,
                                                       const BenchFile& file, const BoardDesign& board,
                                                       const std::vector<PatchPosture>& postures,
                                                       double lamp_azimuth_rad, int levels);
 
-/// The sources that have samples.
+/// Returns the sources that have samples.
 [[nodiscard]] SourceFlags measured_sources(const std::vector<LightSample>& samples);
 
-/// Light relative to full power as designed; of the lamp, to its own full power. A level at which the light does not
-/// rise above that of the level before is left out.
+/// Returns the light relative to full power as designed, for the lamp relative to its own full power. A level at which
+/// the light does not rise above that of the level before is left out.
 [[nodiscard]] std::vector<LightTable> light_tables(const std::vector<LightSample>& samples);
 
 /// Returns the level of the lamp at full power on the white patch facing it, DN per second; 0 if it was not measured.

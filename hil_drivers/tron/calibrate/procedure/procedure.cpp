@@ -149,7 +149,7 @@ CalibrationData measure_bench(CalibrationBench& bench, const BenchFile& file, co
                               const ProcedureSettings& settings, const PostureFilter& filter,
                               const Progress& progress) {
   const BoardDesign board;
-  // Chosen first: a bench that has no such postures is not moved at all.
+  // Chosen first: a testbed that has no such postures is not moved at all.
   const auto fitted = choose_postures(file, lens, board, settings.fitted, settings.seed, {}, filter);
   const auto judged = choose_postures(file, lens, board, settings.judged, settings.seed + 1'000'003, {}, filter);
   std::vector<PatchPosture> patches;

@@ -16,17 +16,17 @@ struct ProcedureSettings {
   double exposure_s = 2e-3;  ///< where the search for the board's exposure begins
   double lamp_azimuth_rad = 1.2;
 };
-/// Fewer postures, for a test of the whole path.
+/// Returns settings with fewer postures, for a test of the whole path.
 [[nodiscard]] ProcedureSettings quick(ProcedureSettings settings);
 
-/// The part of the detector that the bench's images are of, with the lens as designed.
+/// Returns the lens as designed for the part of the detector that the testbed's images cover.
 [[nodiscard]] LensCalibration lens_as_designed(const twins::camera::CameraSettings& camera,
                                                const twins::camera::Region& region);
 
-/// The lights for images of the board: lamp and the boxes ahead of it, at full power.
+/// Returns the lights for images of the board: lamp and the boxes ahead of it, at full power.
 [[nodiscard]] LightShares board_lights(const BenchFile& file, double lamp_azimuth_rad);
 
-/// One measurement at a posture; no corners where the board is not seen. `exposure_s` is kept for the next.
+/// Measures at one posture; no corners where the board is not seen. `exposure_s` is kept for the next measurement.
 [[nodiscard]] Measurement measure_board(CalibrationBench& bench, const BoardDesign& board, double& exposure_s);
 
 /// Moves over all postures, then lights and camera. `filter`: postures that may be used.
@@ -34,7 +34,7 @@ struct ProcedureSettings {
                                             const ProcedureSettings& settings, const PostureFilter& filter,
                                             const Progress& progress);
 
-/// The fit and the tables of light of data.
+/// Fits data, and computes the tables of light.
 [[nodiscard]] BenchFit calibrate(const CalibrationData& data, const BenchFile& file, const LensCalibration& lens,
                                  const std::string& data_sha256, const Progress& progress);
 

@@ -19,7 +19,7 @@ struct PoseError {
   double pixel_px = 0.0;  ///< mean over the corners of the board
 };
 
-/// Errors of one source at one posture.
+/// Holds the errors of one source at one posture.
 struct EvaluatedPose {
   std::size_t measurement = 0;     ///< its index
   PoseError board;                 ///< against the pose by the image
@@ -29,12 +29,13 @@ struct EvaluatedPose {
   double chi_square = 0.0;  ///< set for kFused
 };
 
-/// T_C_T of a source with a calibration; null without motion capture where it needs it. `fused`: what fusion said.
+/// Returns T_C_T of a source with a calibration; null without motion capture where the source needs it. `fused`: result
+/// of the fusion.
 [[nodiscard]] std::optional<Eigen::Isometry3d> pose_of_source(const Calibration& calibration, Source source,
                                                               const Measurement& measurement,
                                                               FusedPose* fused = nullptr);
 
-/// At all measurements with a pose by the image.
+/// Evaluates all measurements with a pose by the image.
 [[nodiscard]] std::vector<EvaluatedPose> evaluate(const Calibration& calibration, Source source,
                                                   const BoardDesign& board, const Eigen::Isometry3d& T_target_board,
                                                   const std::vector<Measurement>& measurements);

@@ -11,7 +11,7 @@
 
 namespace vbar::tron::calibrate {
 
-/// A line of progress.
+/// Receives a line of progress.
 using Progress = std::function<void(const std::string&)>;
 
 struct BenchMeasurements {
@@ -23,7 +23,8 @@ struct BenchFit {
   std::vector<EvaluatedPose> fused, arms, vicon;  ///< figures of the judged measurements
 };
 
-/// `lens`: as designed. Throws std::runtime_error where the measurements do not determine the bench.
+/// Fits the testbed from the lens as designed. Throws std::runtime_error where the measurements do not determine the
+/// testbed.
 [[nodiscard]] BenchFit fit_bench(const BenchFile& bench, const LensCalibration& lens,
                                  const BenchMeasurements& measurements, const Progress& progress = {});
 

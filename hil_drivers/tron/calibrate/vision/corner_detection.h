@@ -10,7 +10,7 @@
 
 namespace vbar::tron::calibrate {
 
-/// Pixels row by row; an integer is the centre of a pixel.
+/// Holds pixels row by row; an integer is the centre of a pixel.
 struct GrayImage {
   int width = 0, height = 0;
   std::span<const std::uint16_t> pixels;
@@ -24,8 +24,8 @@ struct DetectionSettings {
   double outlier_px = 3.0;                    ///< distance of a corner from the plane that the others span
 };
 
-/// In the order of their numbers; empty if the board is not seen. Throws std::invalid_argument for an image whose
-/// size is not that of its pixels.
+/// Returns corners in the order of their numbers; empty if the board is not seen. Throws std::invalid_argument for an
+/// image whose size is not that of its pixels.
 [[nodiscard]] std::vector<Corner> detect_corners(const GrayImage& image, const BoardDesign& board,
                                                  const DetectionSettings& settings = {});
 

@@ -90,7 +90,7 @@ RobotState Client::pose() {
 }
 
 void Client::poll() {
-  // An answer that nobody waits for any more is not used.
+  // An answer whose wait has ended is not used.
   const auto take_all = [this] {
     while (take()) {
     }

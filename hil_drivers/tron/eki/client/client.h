@@ -21,7 +21,7 @@ struct ClientSettings {
   std::chrono::milliseconds answer_limit{5000};  ///< wall clock, of what never comes
 };
 
-/// One sentence with device, address and what was expected.
+/// States device, address and what was expected, in one sentence.
 class EkiError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -35,8 +35,8 @@ class Client {
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 
-  // Every command returns the state after it, also if the controller has refused it (then `message` says why). All
-  // throw EkiError: the line is closed, no answer, or a document that cannot be read.
+  // Sends a command; every command returns the state after it, also if the controller has rejected it (then `message`
+  // states why). All throw EkiError: the line is closed, no answer, or a document that cannot be read.
 
   State status() { return command(Action::kStatus); }
   /// Starts RSI: its datagrams begin at once, so the RSI client must listen.
@@ -48,9 +48,9 @@ class Client {
 
   /// Reads unsolicited states that have arrived; never waits.
   void poll();
-  /// The last state received, solicited or not.
+  /// Returns the last state received, solicited or not.
   [[nodiscard]] const State& last_state() const { return last_; }
-  /// Number of unsolicited states received.
+  /// Returns the number of unsolicited states received.
   [[nodiscard]] std::uint64_t unsolicited() const { return unsolicited_; }
   [[nodiscard]] const std::string& description() const { return description_; }
 

@@ -58,7 +58,7 @@ using Reply = std::variant<State, RobotState>;
 [[nodiscard]] std::string encode(const State& state);
 [[nodiscard]] std::string encode(const RobotState& state);
 
-/// One document. Throws WireError: one sentence with what was found.
+/// Decodes one document. Throws WireError: one sentence with what was found.
 [[nodiscard]] Command decode_command(std::string_view document);
 [[nodiscard]] Reply decode_reply(std::string_view document);
 
@@ -66,8 +66,8 @@ using Reply = std::variant<State, RobotState>;
 class DocumentBuffer {
  public:
   void append(std::string_view bytes) { buffer_ += bytes; }
-  /// The next complete document. Throws WireError for bytes that cannot begin or continue one (they are discarded), and
-  /// for a document of more than kMaxDocumentBytes.
+  /// Returns the next complete document. Throws WireError for bytes that cannot begin or continue one (they are
+  /// discarded), and for a document of more than kMaxDocumentBytes.
   std::optional<std::string> next();
 
  private:

@@ -14,7 +14,8 @@ using AxisVector = Eigen::Matrix<double, 6, 1>;
 inline constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 inline constexpr double kMillimetresPerMetre = 1000.0;
 
-/// Axes of one robot: A1 to A6 in rad, and E1, the carriage from its home, in m (0 for a robot without a track).
+/// Holds the axes of one robot: A1 to A6 in rad, and E1, the carriage from its home, in m (0 for a robot without a
+/// track).
 struct AxisPositions {
   AxisVector axes_rad = AxisVector::Zero();
   double track_m = 0.0;

@@ -40,18 +40,19 @@ struct ClientSettings {
   std::optional<CommandLimits> track;  ///< limits of the track that carries the robot
 };
 
-/// Address, port and limits of a robot of the bench (full speed and acceleration of its design, not the override).
-/// `track`: of the robot that rides on it, otherwise nullptr.
+/// Returns address, port and limits of a robot of the testbed (full speed and acceleration of its design, not the
+/// override). `track`: set for the robot that rides on it, by default nullptr.
 [[nodiscard]] ClientSettings client_settings(const std::string& name, const Robot& robot, const Track* track,
                                              const RobotFiles& files);
 
-/// A command that would exceed a limit: a defect of the caller. One sentence with device, axis, value and limit.
+/// Reports a command that would exceed a limit: a defect of the caller. One sentence with device, axis, value and
+/// limit.
 class CommandRefused : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The socket cannot be used, or a call out of order.
+/// Reports that the socket cannot be used, or a call out of order.
 class RsiError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -76,20 +77,20 @@ class Client {
   /// Answers with the last command and the stop signal, which ends the motion at the controller. Throws RsiError.
   void answer_stop();
 
-  /// After RSI was stopped and before it is started: discards what has arrived; the next state is a first one.
+  /// Restarts after RSI was stopped and before it is started: discards what has arrived; the next state is a first one.
   void restart();
 
-  /// Where the robot stood at the first state since restart(); corrections count from there.
+  /// Returns the place of the robot at the first state since restart(); corrections count from there.
   [[nodiscard]] const AxisPositions& zero() const;
-  /// The command that was answered last; zero() before the first answer.
+  /// Returns the command that was answered last; zero() before the first answer.
   [[nodiscard]] const AxisPositions& last_command() const;
 
   [[nodiscard]] std::uint16_t port() const;
-  /// "camera robot at RSI port 59152".
+  /// Returns the name for messages: "camera robot at RSI port 59152".
   [[nodiscard]] const std::string& description() const;
   [[nodiscard]] std::uint64_t foreign_datagrams() const;
   [[nodiscard]] std::uint64_t unreadable_datagrams() const;
-  /// Why the last unreadable datagram was ignored; empty: there was none.
+  /// Returns the reason why the last unreadable datagram was ignored; empty: there was none.
   [[nodiscard]] const std::string& last_problem() const;
   [[nodiscard]] const ClientSettings& settings() const;
 

@@ -26,7 +26,7 @@ struct AxisUnits {
 constexpr AxisUnits kTurning{kDegreesPerRadian, "deg", "deg/s", "deg/s2"};
 constexpr AxisUnits kSliding{kMillimetresPerMetre, "mm", "mm/s", "mm/s2"};
 
-/// Comparisons are written so that a NaN is refused.
+/// Comparisons are written so that a NaN is rejected.
 std::string problem_of(const AxisHistory& axis, const CommandLimits& limits, const AxisUnits& units) {
   const double scale = units.wire_per_si;
   const double speed = (axis.command - axis.last) / kCycle_s;

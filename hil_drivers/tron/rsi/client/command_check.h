@@ -1,5 +1,5 @@
 #pragma once
-// Whether a command to the axes is within the limits of one cycle.
+// Check of a command to the axes against the limits of one cycle.
 
 #include <array>
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace vbar::tron::rsi {
 
-/// Limits of one axis of a command.
+/// Holds the limits of one axis of a command.
 struct CommandLimits {
   double lower = 0.0, upper = 0.0;  ///< rad (m from home)
   double speed = 0.0;               ///< rad/s (m/s)
@@ -23,10 +23,10 @@ class CommandCheck {
   CommandCheck(const std::array<CommandLimits, kWireAxes>& axes, const std::optional<CommandLimits>& track)
       : axes_(axes), track_(track) {}
 
-  /// At rest at `zero`, from which corrections count.
+  /// Starts at rest at `zero`, from which corrections count.
   void begin(const AxisPositions& zero);
-  /// Takes the command as that of the next cycle. Otherwise it is ignored, and the result is one sentence with axis,
-  /// value and limit.
+  /// Accepts the command as that of the next cycle. A rejected one is ignored, and the result is one sentence with
+  /// axis, value and limit.
   [[nodiscard]] std::string advance(const AxisPositions& command);
 
   [[nodiscard]] const AxisPositions& zero() const { return zero_; }

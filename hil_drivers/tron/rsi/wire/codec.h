@@ -1,8 +1,8 @@
 #pragma once
-// Encoding is strict: values in the order of the configuration, IPOC last, no blank before "/>", four decimals.
-// Decoding accepts any order, both forms of an empty element, Type and TYPE, additional flat elements and any decimal
-// notation; it refuses document types, entities, nested or repeated elements, numbers that are not finite, and
-// oversize.
+// Codec of RSI documents. Encoding is strict: values in the order of the configuration, IPOC last, no blank before
+// "/>", four decimals. Decoding accepts any order, both forms of an empty element, Type and TYPE, additional flat
+// elements and any decimal notation; it rejects document types, entities, nested or repeated elements, numbers that are
+// not finite, and oversize.
 
 #include <memory>
 #include <string>
@@ -13,21 +13,23 @@
 
 namespace vbar::tron::rsi {
 
-/// Replaces `datagram` by the document. `precision`: decimals, 0 to 9. False: a value is not finite or beyond 1e9.
+/// Replaces `datagram` by the document. `precision`: decimals, 0 to 9. Returns false if a value is not finite or beyond
+/// 1e9.
 [[nodiscard]] bool encode(const Rob& rob, const EthernetXml& ethernet, int precision, std::string& datagram);
-/// Values that `sen` leaves out are not written. False: as above, or kMaxAnswerBytes is exceeded.
+/// Replaces `datagram`; values that `sen` leaves out are not written. Returns false as above, or if kMaxAnswerBytes is
+/// exceeded.
 [[nodiscard]] bool encode(const Sen& sen, const EthernetXml& ethernet, std::string& datagram);
 
 /// Decodes one document after the other without throwing; memory is reused.
 class Decoder {
  public:
-  /// `ethernet` is copied.
+  /// Copies `ethernet`.
   explicit Decoder(const EthernetXml& ethernet);
   ~Decoder();
   Decoder(const Decoder&) = delete;
   Decoder& operator=(const Decoder&) = delete;
 
-  /// False: problem() is one sentence, and the output is unspecified.
+  /// Returns false if the document is rejected: problem() is one sentence, and the output is unspecified.
   [[nodiscard]] bool decode(std::string_view datagram, Rob& rob);
   [[nodiscard]] bool decode(std::string_view datagram, Sen& sen);
   [[nodiscard]] const std::string& problem() const;

@@ -1,5 +1,5 @@
 #pragma once
-// What driver and emulator need of the values of an RSI context (hil_drivers/tron/robot/*.rsi.xml), and its connections
+// Values of an RSI context (hil_drivers/tron/robot/*.rsi.xml) that driver and emulator need, and its connections
 // to the values of the Ethernet configuration.
 
 #include <filesystem>
@@ -29,7 +29,7 @@ struct ContextXml {
 /// Throws mission::MissionError: one sentence with file and line.
 [[nodiscard]] ContextXml read_context_xml(const std::filesystem::path& file);
 
-/// What both files of a robot say.
+/// Holds the content of both files of a robot.
 struct RobotFiles {
   EthernetXml ethernet;
   ContextXml context;

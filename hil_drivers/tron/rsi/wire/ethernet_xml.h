@@ -12,7 +12,7 @@
 
 namespace vbar::tron::rsi {
 
-/// A value of the answer and how it is kept.
+/// Describes a value of the answer and how it is kept.
 struct ReceivedValue {
   std::string attribute;  ///< empty: the text of the element
   int index = 0;          ///< output of the ETHERNET object in the context

@@ -12,20 +12,20 @@ namespace vbar::tron::rsi {
 inline constexpr std::size_t kWireAxes = 6;
 inline constexpr double kCycle_s = 0.004;  ///< #IPO_FAST
 inline constexpr std::uint64_t kCycle_ms = 4;
-/// Number of bytes of a datagram that a decoder accepts; of an answer less than 1,024 are sent.
+/// Number of bytes of a datagram that a decoder accepts; answers have less than 1,024 bytes.
 inline constexpr std::size_t kMaxDatagramBytes = 65536;
 inline constexpr std::size_t kMaxAnswerBytes = 1023;
 
 using SixValues = std::array<double, kWireAxes>;
 
-/// The time stamp that the controller gives to a cycle. The answer repeats its text; nobody but the controller makes
+/// Holds the time stamp that the controller gives to a cycle. The answer repeats its text; only the controller makes
 /// one.
 struct Ipoc {
   std::string text = "0";
   std::uint64_t value = 0;
 };
 
-/// State of the robot in one cycle.
+/// Holds the state of the robot in one cycle.
 struct Rob {
   SixValues cartesian{};    ///< RIst: X Y Z in mm, A B C in deg (about z, y', x''), of the flange in the base
   SixValues axes_deg{};     ///< AIPos: A1 to A6 as measured by the motors
@@ -34,7 +34,8 @@ struct Rob {
   Ipoc ipoc;
 };
 
-/// Answer of the computer. What it leaves out keeps its last value (HOLDON 1) or falls to zero (HOLDON 0).
+/// Holds the answer of the computer. A value that it leaves out keeps its last value (HOLDON 1) or falls to zero
+/// (HOLDON 0).
 struct Sen {
   std::string type;
   std::optional<bool> stop;

@@ -47,7 +47,7 @@ struct DataPacket {
 /// Replaces the content of `datagram`. Throws std::invalid_argument for a field that E1.31 does not permit.
 void encode_data_packet(const DataPacket& packet, Bytes& datagram);
 
-/// Bytes from the network. Throws std::invalid_argument with the position of the error.
+/// Decodes bytes from the network. Throws std::invalid_argument with the position of the error.
 [[nodiscard]] DataPacket decode_data_packet(ByteSpan datagram);
 
 }  // namespace vbar::tron::sacn

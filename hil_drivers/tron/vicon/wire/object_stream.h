@@ -37,7 +37,7 @@ struct TrackedObject {
   std::array<double, 3> rotation_rad{};  ///< RotX, RotY, RotZ
 
   [[nodiscard]] bool is_occluded() const;  ///< all six numbers are zero
-  /// Compares the bits of the numbers.
+  /// Returns true if the bits of the numbers are equal.
   [[nodiscard]] bool has_same_numbers(const TrackedObject& other) const;
 };
 
@@ -45,17 +45,18 @@ struct ObjectBlock {
   std::uint32_t frame = 0;
   std::vector<TrackedObject> objects;
 
-  /// Nothing if the block has no object of that name.
+  /// Returns nothing if the block has no object of that name.
   [[nodiscard]] const TrackedObject* find(std::string_view name) const;
 };
 
-/// The blocks of a frame. Throws std::invalid_argument for a name that is empty, longer than 24 bytes or contains NUL,
-/// for a size of blocks that is not in kBlockBytes, and for objects that do not fit into one unpadded block.
+/// Encodes the blocks of a frame. Throws std::invalid_argument for a name that is empty, longer than 24 bytes or
+/// contains NUL, for a size of blocks that is not in kBlockBytes, and for objects that do not fit into one unpadded
+/// block.
 [[nodiscard]] std::vector<Bytes> encode_frame(const ObjectBlock& frame, std::size_t block_bytes);
 
-/// Bytes from the network. Items of other kinds are skipped; bytes after the last item are padding and are not read.
-/// Throws std::invalid_argument with the position of the error: a block shorter than its items, an object of another
-/// size, a name that is empty, not printable ASCII or given twice, a number that is not finite.
+/// Decodes bytes from the network. Items of other kinds are skipped; bytes after the last item are padding and are not
+/// read. Throws std::invalid_argument with the position of the error: a block shorter than its items, an object of
+/// another size, a name that is empty, not printable ASCII or given twice, a number that is not finite.
 [[nodiscard]] ObjectBlock decode_block(ByteSpan datagram);
 
 }  // namespace vbar::tron::vicon
