@@ -77,7 +77,7 @@ class FlightBoard {
   std::array<std::uint8_t, fsw::link::kMaxCobsFrameBytes> coded_{};
   Restart restart_;
   std::array<char, 120> restart_text_{};
-  FlightRecord record_;  ///< of this flight, as it is retained
+  FlightRecord record_;  ///< record of this flight, as it is retained
   FlightExecutive executive_;
 };
 
@@ -234,10 +234,11 @@ void FlightBoard::goodbye() {
   print("goodbye\n");
   print_counters();
   semihosting_exit(static_cast<std::uint32_t>(ExitCode::kDone));
-  // Not on an emulator: a bench board. It waits for the next hello.
+  // Without an emulator this is a bench board. It waits for the next hello.
 }
 
-// Bytes and frames lost or refused by the interfaces since start-up. The step report counts those of the executive.
+// Number of bytes and frames lost or rejected by the interfaces since start-up. The step report counts those of the
+// executive.
 void FlightBoard::print_counters() const {
   const UdpCounters& udp = endpoint_.counters();
   const struct {

@@ -206,7 +206,7 @@ bool ObjectDetector::touches_missing(int y, const Run& run) const {
   return false;
 }
 
-/// Whether a component kept lies in or beside the box of a much brighter one.
+/// Returns true if a component kept lies in or beside the box of a much brighter one.
 bool ObjectDetector::is_fragment(std::size_t k) const {
   const std::span<const Component> kept = components_.kept();
   const Component& c = kept[k];

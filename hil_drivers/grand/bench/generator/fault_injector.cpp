@@ -173,7 +173,7 @@ void FaultInjector::end(Active& active) {
   }
 }
 
-// What counts the effect of a fault; a fault that acts at once has none.
+// Counter of the effect of a fault; a fault that acts at once has none.
 std::uint64_t FaultInjector::effect_count(const Fault& fault) const {
   Vehicle& vehicle = engine_->vehicle(fault.vehicle);
   switch (fault.kind) {
