@@ -290,7 +290,7 @@ void FlightBoard::step_ends(void* self, bool within_budget) {
   }
 }
 
-// Of the emulator as well: it passes the rate on to the terminal that is UART0 there.
+// Sets the rate, also on the emulator, which passes it on to the terminal that is UART0 there.
 void FlightBoard::set_uart_rate(std::uint32_t baud) {
   if (baud != uart_baud_) {
     uart_baud_ = baud;
