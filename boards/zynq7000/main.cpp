@@ -35,7 +35,7 @@ constexpr std::uint64_t kStepBudgetCycles = 1'000'000'000;
 constexpr std::uint64_t kStepBudgetTicks = 1'600'000'000;
 constexpr std::uint64_t kMinWatchdogSpan = timer_span_ms(500);  // to start the flight software
 
-/// Both interfaces, the session guard and the executive.
+/// Flight computer of this board: both interfaces, the session guard and the executive.
 class FlightBoard {
  public:
   explicit FlightBoard(const Restart& restart) : restart_(restart), executive_(platform()) {}

@@ -32,7 +32,7 @@ class Sums {
     return sum;
   }
 
-  /// None of its eight neighbours is greater, and none of those that are equal comes first.
+  /// Returns true if none of its eight neighbours is greater, and none of the equal ones comes first.
   [[nodiscard]] bool is_maximum(int x, int y, const Component& c) const {
     const int here = at(x, y);
     for (int j = std::max(y - 1, c.y_min); j <= std::min(y + 1, c.y_max); ++j) {

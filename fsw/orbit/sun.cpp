@@ -61,7 +61,7 @@ double true_longitude(double t) {
          13.0 / 12.0 * e * e * e * math::sin(3.0 * m) + perturbations(t);
 }
 
-/// From ecliptic axes, z towards its pole.
+/// Returns the equatorial vector of one in ecliptic axes, z towards the ecliptic's pole.
 Vector3 equatorial(double x, double y, double z) {
   const double c = math::cos(kObliquity);
   const double s = math::sin(kObliquity);

@@ -20,7 +20,7 @@ BenchEngine::SampleFault sample_fault(FaultKind kind) {
   return BenchEngine::SampleFault::kLost;
 }
 
-/// For the faults of a line that LineImpairment makes.
+/// Returns the kind of impairment of a line's fault.
 LineImpairment::Kind impairment(FaultKind kind) {
   switch (kind) {
     case FaultKind::kLineHalfMessages:
