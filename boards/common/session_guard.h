@@ -12,16 +12,17 @@
 
 namespace vbar::boards {
 
-/// `Sender`: a sender, as far as the board's interfaces distinguish senders; it has operator==.
+/// Admits one sender to a session. `Sender` is a sender, as far as the board's interfaces distinguish senders; it has
+/// operator==.
 template <class Sender>
 class SessionGuard {
  public:
-  /// `silence` in the unit of the times given to `admits`: time without frames of the peer after which another may take
-  /// over.
+  /// `silence`, in the unit of the times given to `admits`, is the time without frames of the peer after which another
+  /// sender may become the peer.
   explicit SessionGuard(std::uint64_t silence) : silence_(silence) {}
 
-  /// True if the frame, received at `now`, is for the flight software. A kHello that is admitted makes its sender the
-  /// peer.
+  /// Returns true if the frame, received at `now`, is for the flight software. A kHello that is admitted makes its
+  /// sender the peer.
   bool admits(const Sender& sender, std::span<const std::uint8_t> frame, std::uint64_t now) {
     if (has_peer_ && sender == peer_) {
       last_heard_ = now;
@@ -35,18 +36,19 @@ class SessionGuard {
     return true;
   }
 
-  /// After a reset, at `now`: the peer of the session that it ended, which is answered until another says kHello.
+  /// Restores the peer after a reset at `now`: that of the session which the reset ended. It is answered until another
+  /// sender says kHello.
   void resume(const Sender& peer, std::uint64_t now) {
     peer_ = peer;
     has_peer_ = true;
     last_heard_ = now;
   }
 
-  /// The peer sent kGoodbye.
+  /// Ends the session after the peer's kGoodbye.
   void end_session() { has_peer_ = false; }
 
   [[nodiscard]] bool has_peer() const { return has_peer_; }
-  /// Destination of answers; valid while has_peer().
+  /// Returns the destination of answers; valid while has_peer().
   [[nodiscard]] const Sender& peer() const { return peer_; }
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// Opens the endpoints of frame links. Functions that return a file descriptor return -1 and leave errno on failure.
+// Endpoints of frame links. Functions that return a file descriptor return -1 and leave errno on failure.
 
 #include <cstdint>
 
@@ -7,22 +7,22 @@
 
 namespace vbar::boards::posix {
 
-/// A serial device: raw, 8N1, no flow control, modem lines ignored. An unknown baud rate: EINVAL.
+/// Opens a serial device: raw, 8N1, no flow control, modem lines ignored. An unknown baud rate: EINVAL.
 int open_serial(const char* device, std::uint32_t baud);
 
 /// Connects to a listening Unix stream socket.
 int connect_unix(const char* path);
 
-/// A UDP socket bound to `address`.
+/// Opens a UDP socket bound to `address`.
 int bind_udp(const sockaddr_in& address);
 
-/// Puts `fd` into raw mode if it is a terminal. False if that fails.
+/// Puts `fd` into raw mode if it is a terminal. Returns false if that fails.
 bool make_raw_if_terminal(int fd);
 
-/// "127.0.0.1:5000" to an address; false if `text` is not one.
+/// Converts "127.0.0.1:5000" to an address; false if `text` is not one.
 bool parse_address(const char* text, sockaddr_in& address);
 
-/// A decimal number up to `limit`; false if `text` is not one.
+/// Reads a decimal number up to `limit`; false if `text` is not one.
 bool parse_number(const char* text, std::uint32_t limit, std::uint32_t& number);
 
 }  // namespace vbar::boards::posix

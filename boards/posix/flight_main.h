@@ -1,5 +1,5 @@
 #pragma once
-// The whole program of a flight computer under a POSIX system.
+// Complete program of a flight computer under a POSIX system.
 
 namespace vbar::boards::posix {
 

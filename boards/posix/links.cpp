@@ -16,7 +16,7 @@ void wait_until(int fd, short event) {
   (void)::poll(&request, 1, -1);
 }
 
-/// Whether the call is to be repeated after `result` of a read or write, at once or when `event` has happened.
+/// Returns true if the call is to be repeated after `result` of a read or write, at once or when `event` has happened.
 bool is_passing(int fd, short event) {
   if (errno == EINTR) return true;
   if (errno != EAGAIN && errno != EWOULDBLOCK) return false;

@@ -1,5 +1,5 @@
 #pragma once
-// The frame links of a flight computer under a POSIX system: a byte stream (serial device, pseudo-terminal, socket) and
+// Frame links of a flight computer under a POSIX system: a byte stream (serial device, pseudo-terminal, socket) and
 // UDP. Both serve a FlightExecutive until the run is over or the host is gone.
 
 #include <array>
@@ -27,10 +27,10 @@ class StreamLink {
   /// `fd` stays the caller's; a terminal must be in raw mode.
   explicit StreamLink(int fd) : fd_(fd) {}
 
-  /// `Platform::send`, with a StreamLink as context.
+  /// Implements `Platform::send`, with a StreamLink as context.
   static void send(void* context, std::span<const std::uint8_t> frame);
 
-  /// Feeds `executive` until the link ends; also with what `receiver`, if it is not null, brings meanwhile.
+  /// Feeds `executive` until the link ends; also with the bytes of `receiver`, if it is not null.
   LinkEnd serve(FlightExecutive& executive, const ReceiverLine* receiver = nullptr);
 
  private:
@@ -41,7 +41,7 @@ class StreamLink {
   std::array<std::uint8_t, fsw::link::kMaxCobsFrameBytes> coded_{};
 };
 
-/// The address and port that a datagram came from.
+/// Address and port of a datagram's sender.
 struct DatagramSender {
   sockaddr_in address{};
 
@@ -60,10 +60,10 @@ class DatagramLink {
   /// Serves `peer` alone.
   DatagramLink(int fd, const sockaddr_in& peer) : fd_(fd), fixed_peer_{peer}, peer_is_fixed_(true) {}
 
-  /// `Platform::send`, with a DatagramLink as context.
+  /// Implements `Platform::send`, with a DatagramLink as context.
   static void send(void* context, std::span<const std::uint8_t> frame);
 
-  /// As StreamLink::serve. Datagrams of other senders are counted as rejected.
+  /// Serves as StreamLink::serve does. Datagrams of other senders are counted as rejected.
   LinkEnd serve(FlightExecutive& executive, const ReceiverLine* receiver = nullptr);
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// The serial line on which a GNSS receiver is wired to a flight computer under a POSIX system.
+// Serial line on which a GNSS receiver is wired to a flight computer under a POSIX system.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,14 +9,14 @@ namespace vbar::boards::posix {
 
 class ReceiverLine {
  public:
-  /// `device`: a serial device or pseudo-terminal, opened when a session asks for it. Null: there is none.
+  /// `device` is a serial device or pseudo-terminal, opened when a session requires it. Null: there is none.
   explicit ReceiverLine(const char* device) : device_(device) {}
   ~ReceiverLine() { close(); }
   ReceiverLine(const ReceiverLine&) = delete;
   ReceiverLine& operator=(const ReceiverLine&) = delete;
 
-  /// Opens the device at this rate and discards what it has received before. False if it cannot be opened or the rate
-  /// is unknown.
+  /// Opens the device at this rate and discards earlier bytes. Returns false if it cannot be opened or the rate is
+  /// unknown.
   bool open(std::uint32_t baud);
   void close();
 
@@ -24,7 +24,7 @@ class ReceiverLine {
   /// opened again as soon as that is possible.
   std::size_t read(std::span<std::uint8_t> out);
 
-  /// To wait for bytes; -1 while the line is closed or hung up.
+  /// Descriptor to wait for bytes; -1 while the line is closed or hung up.
   [[nodiscard]] int fd() const { return fd_; }
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-// Bytes from an interrupt handler to the main loop: one writer, one reader, no lock. Full: the newest byte is dropped
-// and counted; bytes in the ring are never overwritten.
+// Ring of bytes from an interrupt handler to the main loop: one writer, one reader, no lock. If it is full the newest
+// byte is dropped and counted; bytes in the ring are never overwritten.
 
 #include <array>
 #include <atomic>
@@ -14,7 +14,7 @@ class ByteRing {
   static_assert(kBytes > 0 && (kBytes & (kBytes - 1)) == 0 && kBytes <= 0x80000000U, "a power of two");
 
  public:
-  /// The writer's.
+  /// Adds a byte; for the writer.
   void push(std::uint8_t byte) {
     const std::uint32_t head = head_.load(std::memory_order_relaxed);
     if (head - tail_.load(std::memory_order_acquire) >= kBytes) {
@@ -25,7 +25,7 @@ class ByteRing {
     head_.store(head + 1U, std::memory_order_release);
   }
 
-  /// The reader's. False if the ring is empty.
+  /// Removes the oldest byte; for the reader. Returns false if the ring is empty.
   bool pop(std::uint8_t& byte) {
     const std::uint32_t tail = tail_.load(std::memory_order_relaxed);
     if (head_.load(std::memory_order_acquire) == tail) {

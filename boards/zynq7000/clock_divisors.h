@@ -10,8 +10,8 @@ struct BaudDivisors {
   std::uint32_t divider = 4;    ///< BAUDDIV.BDIV, 4 to 255
 };
 
-/// Divisors nearest to `baud` = clock / (generator * (divider + 1)), UG585 chapter 19. Of equals the smallest divider,
-/// which has the fewest samples per bit but the finest resolution of the generator.
+/// Returns the divisors nearest to `baud` = clock / (generator * (divider + 1)), UG585 chapter 19. Among equals the
+/// smallest divider is chosen, which has the fewest samples per bit but the finest resolution of the generator.
 constexpr BaudDivisors baud_divisors(std::uint32_t clock_hz, std::uint32_t baud) {
   BaudDivisors best;
   std::uint32_t min_error = 0xFFFFFFFFU;
@@ -34,7 +34,7 @@ struct ClockDivisors {
   std::uint32_t second = 1;  ///< 1 to 63
 };
 
-/// Two six-bit divisors whose product is nearest to source / wanted; of equals the greatest first one.
+/// Returns two six-bit divisors whose product is nearest to source / wanted; among equals the greatest first one.
 constexpr ClockDivisors clock_divisors(std::uint32_t source_hz, std::uint32_t wanted_hz) {
   const std::uint32_t wanted = (source_hz + wanted_hz / 2U) / wanted_hz;
   ClockDivisors best;

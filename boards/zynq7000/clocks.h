@@ -15,7 +15,7 @@ enum class LineRate : std::uint8_t { k10Mbps, k100Mbps, k1000Mbps };
 /// Enables the bus clocks of both UARTs and Ethernet, and the reference clock of the UARTs; divisors are unchanged.
 void clocks_enable_peripherals();
 
-/// Reference clock of the UARTs, Hz.
+/// Returns the reference clock of the UARTs, Hz.
 std::uint32_t uart_reference_hz();
 
 /// Sets the transmit clock of Ethernet: 2.5, 25 or 125 MHz, from the I/O PLL; its receive clock comes from the PHY.

@@ -8,7 +8,7 @@ namespace vbar::boards::zynq7000 {
 void console_open();
 void print(const char* text);
 void print_decimal(std::uint64_t value);
-/// Eight hexadecimal digits.
+/// Prints eight hexadecimal digits.
 void print_hex(std::uint32_t value);
 
 }  // namespace vbar::boards::zynq7000

@@ -5,12 +5,12 @@
 
 namespace vbar::boards::zynq7000 {
 
-/// All accesses before, device writes included, are complete before any instruction after is executed.
+/// Completes all accesses before, device writes included, before any instruction after is executed.
 inline void synchronize() {
   asm volatile("dsb" ::: "memory");
 }
 
-/// Memory accesses before are observed by other masters before those after.
+/// Orders memory accesses: other masters observe those before ahead of those after.
 inline void memory_barrier() {
   asm volatile("dmb" ::: "memory");
 }
@@ -43,7 +43,7 @@ inline void restore_interrupts(std::uint32_t cpsr) {
 }
 }  // namespace detail
 
-/// No interrupt is taken during the lifetime of this object.
+/// Masks interrupts during the lifetime of this object.
 class InterruptsMasked {
  public:
   InterruptsMasked() : before_(detail::status_register()) { detail::mask_interrupts(); }

@@ -6,7 +6,7 @@
 
 namespace vbar::boards::zynq7000 {
 
-/// The number of cycles that is congruent to `low` modulo 2^32 and nearest to `estimate`.
+/// Returns the number of cycles that is congruent to `low` modulo 2^32 and nearest to `estimate`.
 constexpr std::uint64_t nearest_cycle_count(std::uint32_t low, std::uint64_t estimate) {
   constexpr std::uint64_t kTurn = 1ULL << 32;
   const std::uint64_t same_turn = (estimate & ~(kTurn - 1U)) | low;

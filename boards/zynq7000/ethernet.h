@@ -20,7 +20,7 @@ class Ethernet {
   /// Initialises the controller and detects the PHY. Without a PHY, no frame is ever received.
   void open(const MacAddress& mac);
 
-  /// True if there is a PHY that had no link at the last check: `link_came_up` must then be called repeatedly.
+  /// Returns true if there is a PHY that had no link at the last check: `link_came_up` must then be called repeatedly.
   [[nodiscard]] bool waits_for_link() const { return phy_.has_value() && !link_.has_value(); }
   /// Reads the PHY, and sets the rate of the controller once there is a link. The rate is kept until the next start.
   bool link_came_up();
@@ -31,7 +31,7 @@ class Ethernet {
 
   void send(std::span<const std::uint8_t> frame);
 
-  /// Number of receive-ring overruns; of frames that were corrupted or too long; of frames not sent.
+  /// Number of receive-ring overruns; of corrupted or too long frames; of frames not sent.
   [[nodiscard]] std::uint32_t receive_overruns() const { return receive_overruns_; }
   [[nodiscard]] std::uint32_t frames_broken() const { return frames_broken_; }
   [[nodiscard]] std::uint32_t sends_dropped() const { return sends_dropped_; }

@@ -1,6 +1,6 @@
 #pragma once
-// What a board retains of its flight through a reset: a record in memory that a reset leaves as it is, of which a
-// checksum states whether it did.
+// Data of a flight that a board retains through a reset: a record in memory that a reset does not change. Its checksum
+// states whether it is intact.
 
 #include <array>
 #include <bit>
@@ -17,8 +17,8 @@ struct FlightRecord {
   std::uint32_t step = 0;
   std::uint32_t in_step = 0;              ///< 1 from the first packet of `step` to its end
   std::uint32_t expired = 0;              ///< 1: the handler of the watchdog has requested the reset
-  std::uint32_t is_ethernet = 0;          ///< 1: so is the interface of the peer
-  std::uint32_t port = 0;                 ///< of the peer, as all of the following
+  std::uint32_t is_ethernet = 0;          ///< 1: the interface of the peer is Ethernet
+  std::uint32_t port = 0;                 ///< port of the peer; the following are the peer's too
   std::array<std::uint8_t, 4> address{};  ///< IPv4
   std::array<std::uint8_t, 8> mac{};      ///< the first 6
 };
@@ -28,7 +28,8 @@ constexpr RecordWords words_of(const FlightRecord& record) {
   return std::bit_cast<RecordWords>(record);
 }
 
-/// FNV-1a. That of zeros is not zero, so that memory which was never written is not taken for a record.
+/// Returns FNV-1a. The checksum of zeros is not zero, so that memory which was never written does not count as a
+/// record.
 constexpr std::uint32_t checksum_of(const FlightRecord& record) {
   std::uint32_t hash = 0x811C9DC5U;
   for (const std::uint32_t word : words_of(record)) {
@@ -39,11 +40,11 @@ constexpr std::uint32_t checksum_of(const FlightRecord& record) {
   return hash;
 }
 
-/// The peer of the session in the words of a record, and back.
+/// Writes the peer of the session to the words of a record; the next function reads it.
 void set_peer(FlightRecord& record, const Sender& sender);
 Sender peer_of(const FlightRecord& record);
 
-/// Writes why the session of `record` has ended, for its host: "error: ...", zero-terminated.
+/// Writes the reason why the session of `record` has ended, for its host: "error: ...", zero-terminated.
 void describe_reset(const FlightRecord& record, std::span<char, 120> text);
 
 }  // namespace vbar::boards::zynq7000

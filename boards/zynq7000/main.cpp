@@ -35,7 +35,7 @@ constexpr std::uint64_t kStepBudgetCycles = 1'000'000'000;
 constexpr std::uint64_t kStepBudgetTicks = 1'600'000'000;
 constexpr std::uint64_t kMinWatchdogSpan = timer_span_ms(500);  // to start the flight software
 
-/// Both interfaces, the session guard and the executive.
+/// Flight computer of this board: both interfaces, the session guard and the executive.
 class FlightBoard {
  public:
   explicit FlightBoard(const Restart& restart) : restart_(restart), executive_(platform()) {}
@@ -77,7 +77,7 @@ class FlightBoard {
   std::array<std::uint8_t, fsw::link::kMaxCobsFrameBytes> coded_{};
   Restart restart_;
   std::array<char, 120> restart_text_{};
-  FlightRecord record_;  ///< of this flight, as it is retained
+  FlightRecord record_;  ///< record of this flight, as it is retained
   FlightExecutive executive_;
 };
 
@@ -234,10 +234,11 @@ void FlightBoard::goodbye() {
   print("goodbye\n");
   print_counters();
   semihosting_exit(static_cast<std::uint32_t>(ExitCode::kDone));
-  // Not on an emulator: a bench board. It waits for the next hello.
+  // Without an emulator this is a bench board. It waits for the next hello.
 }
 
-// Bytes and frames lost or refused by the interfaces since start-up. The step report counts those of the executive.
+// Number of bytes and frames lost or rejected by the interfaces since start-up. The step report counts those of the
+// executive.
 void FlightBoard::print_counters() const {
   const UdpCounters& udp = endpoint_.counters();
   const struct {
@@ -289,7 +290,7 @@ void FlightBoard::step_ends(void* self, bool within_budget) {
   }
 }
 
-// Of the emulator as well: it passes the rate on to the terminal that is UART0 there.
+// Sets the rate, also on the emulator, which passes it on to the terminal that is UART0 there.
 void FlightBoard::set_uart_rate(std::uint32_t baud) {
   if (baud != uart_baud_) {
     uart_baud_ = baud;

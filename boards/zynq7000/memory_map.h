@@ -1,12 +1,12 @@
 #pragma once
 // Addresses and interrupt numbers of the Zynq-7000 processing system (Xilinx UG585, appendix B and chapter 7), and
-// where this image places code and data. zynq7000.ld states the same memory layout; mmu.cpp maps it.
+// placement of this image's code and data. zynq7000.ld states the same memory layout; mmu.cpp maps it.
 
 #include <cstdint>
 
 namespace vbar::boards::zynq7000 {
 
-/// A device register. Device memory is mapped strongly enough that accesses are neither merged nor reordered.
+/// Returns a device register. Device memory is mapped strongly enough that accesses are neither merged nor reordered.
 inline volatile std::uint32_t& reg(std::uintptr_t address) {
   return *reinterpret_cast<volatile std::uint32_t*>(address);
 }
@@ -28,8 +28,8 @@ inline constexpr unsigned kInterruptGem0 = 54;
 inline constexpr unsigned kInterruptUart0 = 59;
 inline constexpr unsigned kInterruptUart1 = 82;
 
-// Buffers of Ethernet's DMA, and what outlasts a reset, lie in one uncached section of 1 MiB. Names of the linker
-// script.
+// One uncached section of 1 MiB holds the buffers of Ethernet's DMA and the data that outlast a reset. Names of the
+// linker script.
 inline constexpr std::uintptr_t kSectionBytes = 0x00100000U;
 inline constexpr std::uintptr_t kImageStart = 0x00100000U;
 inline constexpr std::uintptr_t kStackGuard = 0x03E00000U;  ///< unmapped: an overflowing stack faults here

@@ -8,7 +8,7 @@
 #include "boards/zynq7000/memory_map.h"
 
 extern "C" {
-// Of zynq7000.ld: only its address is used.
+// Symbol of zynq7000.ld: only its address is used.
 extern char __writable_start[];
 void vbar_memory_enable();
 }

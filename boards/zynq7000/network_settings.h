@@ -9,7 +9,8 @@
 
 namespace vbar::boards::zynq7000 {
 
-/// As in the image: no padding, the port with its high byte first. The script finds it by its first eight bytes.
+/// Addresses as they lie in the image: no padding, the port with its high byte first. The script finds them by the
+/// first eight bytes.
 struct NetworkSettings {
   std::array<char, 8> label;
   MacAddress mac;
@@ -20,7 +21,8 @@ struct NetworkSettings {
 };
 static_assert(sizeof(NetworkSettings) == 20);
 
-/// Defined in a source of its own: a compiler that saw the values would not read them from the image.
+/// Settings of this image, defined in a source of its own: a compiler that saw the values would not read them from the
+/// image.
 extern const NetworkSettings kNetworkSettings;
 
 }  // namespace vbar::boards::zynq7000

@@ -1,5 +1,5 @@
 #pragma once
-// The Ethernet PHY on the controller's management bus (IEEE 802.3 clause 22), of any type.
+// Ethernet PHY of any type on the controller's management bus (IEEE 802.3 clause 22).
 
 #include <cstdint>
 #include <optional>
@@ -13,13 +13,13 @@ struct PhyLink {
   bool full_duplex = true;
 };
 
-/// A PHY at an address on the management bus of the controller at `controller`.
+/// PHY at an address on the management bus of the controller at `controller`.
 class Phy {
  public:
   /// Finds the PHY with the lowest address, if there is one, and starts negotiation.
   static std::optional<Phy> find(std::uintptr_t controller);
 
-  /// The negotiated rate; no value without a link.
+  /// Returns the negotiated rate; no value without a link.
   [[nodiscard]] std::optional<PhyLink> link() const;
 
  private:

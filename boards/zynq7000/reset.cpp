@@ -19,7 +19,7 @@ struct Retained {
   std::uint32_t words[std::tuple_size_v<RecordWords>];  // an array of the language: the object is volatile
   std::uint32_t checksum;
 };
-// Not cleared at start-up, and not cached: what is written is in memory at the time of the reset.
+// Memory that is neither cleared at start-up nor cached: a value written is in memory at the time of the reset.
 [[gnu::section(".retained")]] volatile Retained retained;
 
 bool read_retained(FlightRecord& record) {

@@ -5,20 +5,20 @@
 
 namespace vbar::boards::zynq7000 {
 
-/// What the image finds at its start.
+/// State that the image finds at its start.
 struct Restart {
   bool by_watchdog = false;
-  bool has_record = false;  ///< of the flight that the watchdog ended
+  bool has_record = false;  ///< there is a record of the flight that the watchdog ended
   FlightRecord record;
 };
 
-/// To be called once, at start-up.
+/// Returns the state before. To be called once, at start-up.
 Restart find_restart();
 
 /// Keeps the record through a reset.
 void retain(const FlightRecord& record);
 
-/// Where the watchdog cannot do so itself: marks the retained record and resets the processing system.
+/// Marks the retained record and resets the processing system, where the watchdog cannot do so itself.
 [[noreturn]] void reset_by_watchdog();
 
 }  // namespace vbar::boards::zynq7000

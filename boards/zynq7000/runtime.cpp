@@ -17,7 +17,7 @@ namespace {
 
 extern "C" {
 
-// Of zynq7000.ld.
+// Symbols of zynq7000.ld.
 using Constructor = void (*)();
 extern const Constructor __init_array_start[];
 extern const Constructor __init_array_end[];

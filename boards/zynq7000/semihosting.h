@@ -20,7 +20,7 @@ enum class ExitCode : std::uint32_t {
 /// Ends the emulator, or stops at the debugger. Returns if there is neither.
 void semihosting_exit(std::uint32_t code);
 
-/// Copies the command line, zero-terminated, to `text`. False if there is none or it does not fit.
+/// Copies the command line, zero-terminated, to `text`. Returns false if there is none or it does not fit.
 bool semihosting_command_line(std::span<char> text);
 
 }  // namespace vbar::boards::zynq7000

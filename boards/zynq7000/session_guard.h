@@ -1,5 +1,5 @@
 #pragma once
-// The senders of this board, and the guard that admits one of them to a session (boards/common/session_guard.h).
+// Senders of this board, and the session guard that admits one of them (boards/common/session_guard.h).
 
 #include <cstdint>
 
@@ -10,8 +10,8 @@ namespace vbar::boards::zynq7000 {
 
 enum class Interface : std::uint8_t { kSerial, kEthernet };
 
-/// A sender, as far as its interface distinguishes senders. The serial line has one sender; on Ethernet a
-/// sender is an address and a port.
+/// Sender, as far as its interface distinguishes senders. The serial line has one sender; on Ethernet a sender is an
+/// address and a port.
 struct Sender {
   Interface interface = Interface::kSerial;
   UdpPeer peer;  ///< kEthernet

@@ -1,7 +1,7 @@
 #include "boards/zynq7000/stack_meter.h"
 
 extern "C" {
-// Of zynq7000.ld: only their addresses are used.
+// Symbols of zynq7000.ld: only their addresses are used.
 extern const std::uint32_t __stack_bottom[];
 extern const std::uint32_t __stack_top[];
 }

@@ -1,6 +1,6 @@
 #pragma once
-// The two counters of the Cortex-A9: the global timer, which always runs, and the cycle counter of the
-// performance monitoring unit, which counts on silicon and reads zero on the emulator.
+// Two counters of the Cortex-A9: the global timer, which always runs, and the cycle counter of the performance
+// monitoring unit, which counts on silicon and reads zero on the emulator.
 
 #include <cstdint>
 
@@ -11,18 +11,20 @@ namespace vbar::boards::zynq7000 {
 /// Starts both counters and detects whether the cycle counter runs.
 void timers_initialize();
 
-/// Global timer. Half the processor clock on silicon (about 333 MHz), 100 MHz on the emulator.
+/// Returns the global timer. Half the processor clock on silicon (about 333 MHz), 100 MHz on the emulator.
 std::uint64_t global_timer();
 
-/// A span of the global timer that lasts at least `milliseconds` at any rate; up to 3.5 times that on the emulator.
+/// Returns a span of the global timer that lasts at least `milliseconds` at any rate; up to 3.5 times that on the
+/// emulator.
 constexpr std::uint64_t timer_span_ms(std::uint64_t milliseconds) {
   return milliseconds * 350'000U;
 }
 
-/// The unit of cost_counter().
+/// Returns the unit of cost_counter().
 CounterUnit cost_counter_unit();
 
-/// Processor cycles, or ticks of the emulator's global timer. Differences are valid over intervals without sleep.
+/// Returns processor cycles, or ticks of the emulator's global timer. Differences are valid over intervals without
+/// sleep.
 std::uint64_t cost_counter();
 
 }  // namespace vbar::boards::zynq7000

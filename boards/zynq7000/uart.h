@@ -1,5 +1,5 @@
 #pragma once
-// The Zynq's UART (Cadence IP, UG585 chapter 19), 8 data bits, no parity, 1 stop bit, no flow control.
+// UART of the Zynq (Cadence IP, UG585 chapter 19), 8 data bits, no parity, 1 stop bit, no flow control.
 //
 // Reception is by interrupt into a ring, for either depth of the receive FIFO: 64 bytes on silicon, 16 on the emulator.
 // Transmission waits for space in the FIFO, for a bounded time.
@@ -12,7 +12,7 @@
 
 namespace vbar::boards::zynq7000 {
 
-/// A UART that only sends, for the console: usable at any time, in a fault handler too.
+/// UART that only sends, for the console: usable at any time, in a fault handler too.
 class UartTransmitter {
  public:
   explicit constexpr UartTransmitter(std::uintptr_t base) : base_(base) {}
@@ -27,10 +27,10 @@ class UartTransmitter {
   std::uintptr_t base_;
 };
 
-/// A bidirectional UART. One object per UART, never moved: the interrupt handler holds its address.
+/// Bidirectional UART. One object per UART, never moved: the interrupt handler holds its address.
 class Uart {
  public:
-  /// Enough for a full window of frames that arrives while a step runs.
+  /// Size of the ring: sufficient for a full window of frames that arrives while a step runs.
   static constexpr std::size_t kRingBytes = 64 * 1024;
 
   constexpr Uart(std::uintptr_t base, unsigned interrupt) : base_(base), interrupt_(interrupt), transmitter_(base) {}
@@ -39,13 +39,13 @@ class Uart {
 
   void open(std::uint32_t baud);
 
-  /// Next received byte; false if there is none.
+  /// Reads the next received byte; false if there is none.
   bool read(std::uint8_t& byte) { return received_.pop(byte); }
-  /// Takes what is in the FIFO without waiting for its interrupt. To be called with interrupts masked.
+  /// Reads the FIFO without waiting for its interrupt. To be called with interrupts masked.
   void take_received() { drain(); }
   [[nodiscard]] bool has_input() const { return !received_.empty(); }
 
-  /// As UartTransmitter::write; counts the bytes dropped.
+  /// Writes as UartTransmitter::write does; counts the bytes dropped.
   void write(std::span<const std::uint8_t> bytes);
 
   /// Number of FIFO overruns, of bytes dropped by a full ring, of writes cut short by a stalled line.

@@ -1,11 +1,11 @@
 #pragma once
-// One UDP port on one IPv4 address: ARP (RFC 826), IPv4 (RFC 791), UDP (RFC 768) and ICMP echo (RFC 792), the subset
-// needed for one peer at a time. Independent of hardware: frames in, frames out.
+// UDP port on one IPv4 address: ARP (RFC 826), IPv4 (RFC 791), UDP (RFC 768) and ICMP echo (RFC 792), the subset needed
+// for one peer at a time. Independent of hardware: it receives and returns frames.
 //
-// Every incoming byte may be hostile. A frame is accepted only if its lengths, addresses and checksums
-// agree; all others are counted and have no effect. The endpoint never requests an address: it answers to the one
-// from which a request came. Fragments are not reassembled (a link frame fits a packet), options are skipped, and
-// frames sent to a group address, or from one, are not answered.
+// Every incoming byte may be hostile. A frame is accepted only if its lengths, addresses and checksums agree; all
+// others are counted and have no effect. The endpoint never requests an address: it answers to the one from which a
+// request came. Fragments are not reassembled (a link frame fits a packet), options are skipped, and frames sent to a
+// group address, or from one, are not answered.
 
 #include <array>
 #include <cstddef>
@@ -34,7 +34,7 @@ struct UdpPeer {
 
 /// Result of a frame.
 enum class UdpEvent : std::uint8_t {
-  kNothing,   ///< not for this endpoint, or refused
+  kNothing,   ///< not for this endpoint, or rejected
   kReply,     ///< the reply must be sent
   kDatagram,  ///< a datagram for the port
 };
@@ -58,7 +58,7 @@ class UdpEndpoint {
   UdpEndpoint(const MacAddress& mac, const Ipv4Address& address, std::uint16_t port)
       : mac_(mac), address_(address), port_(port) {}
 
-  /// Takes one Ethernet frame (from the destination address to the end of its data, padding allowed, no check
+  /// Processes one Ethernet frame (from the destination address to the end of its data, padding allowed, no check
   /// sequence). The answer is written to `reply`, which must not overlap `frame`; an answer that does not fit is not
   /// sent.
   UdpReceived receive(std::span<const std::uint8_t> frame, std::span<std::uint8_t> reply);

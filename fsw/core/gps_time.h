@@ -39,7 +39,7 @@ constexpr double seconds(Duration d) {
   return static_cast<double>(d.ns) / 1e9;
 }
 
-/// Returns the span of a whole number of seconds.
+/// Returns the span of an integer number of seconds.
 constexpr Duration duration_of_seconds(std::int64_t s) {
   return {s * kNanosecondsPerSecond};
 }

@@ -52,8 +52,8 @@ Status check(std::span<const double> ambiguities, std::span<const double> covari
   return math::is_finite(sum) ? Status::kOk : Status::kNotFinite;
 }
 
-/// Up to kMaxAmbiguities, each the most precise given those before: the pivots of a Cholesky factorisation, smallest
-/// first. Leaves out those that depend on the others.
+/// Selects up to kMaxAmbiguities, each the most precise given those before: the pivots of a Cholesky factorisation,
+/// smallest first. Leaves out those that depend on the others.
 Candidates select_sharpest(const Covariance& covariance, ValidationWorkspace& workspace) {
   std::array<double, kMaxFloatAmbiguities> rest{};
   std::array<bool, kMaxFloatAmbiguities> taken{};

@@ -58,7 +58,7 @@ Status Decorrelation::load(std::span<const double> ambiguities, std::span<const 
   return Status::kOk;
 }
 
-/// From the last row upwards, Q = L' D L: the next component is the one of minimum variance given those before.
+/// Factors Q = L' D L from the last row upwards: the next component is the one of minimum variance given those before.
 Status Decorrelation::factorise() {
   std::array<double, kMaxAmbiguities> variance{};
   for (std::size_t i = 0; i < count_; ++i) variance[i] = l_.row(i)[i];

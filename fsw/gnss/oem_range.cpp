@@ -81,7 +81,7 @@ class EpochBuilder {
            within(observation.lock_time_s, 0.0, kMaxLockTime);
   }
 
-  /// Whether `a` comes after `b`.
+  /// Returns true if `a` comes after `b`.
   static bool after(const Observation& a, const Observation& b) {
     return a.satellite != b.satellite ? a.satellite > b.satellite : a.signal > b.signal;
   }

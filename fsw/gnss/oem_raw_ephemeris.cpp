@@ -43,7 +43,7 @@ class Subframe {
   [[nodiscard]] double signed_scaled(std::size_t word, std::size_t bit, unsigned count, int power) const {
     return static_cast<double>(sign_extended(bits(word, bit, count), count)) * two_to_the(power);
   }
-  /// Whether it begins as subframe `number` does.
+  /// Returns true if it begins as subframe `number` does.
   [[nodiscard]] bool is(std::uint32_t number) const { return bits(1, 1, 8) == kPreamble && bits(2, 20, 3) == number; }
 
  private:
@@ -79,7 +79,7 @@ void read_orbit(const Subframe& two, const Subframe& three, Ephemeris& ephemeris
   ephemeris.i_dot = three.signed_scaled(10, 9, 14, -43) * kSemicircle;
 }
 
-/// Whether the week of transmission, sent modulo 1024, is the one of the reference time or next to it.
+/// Returns true if the week of transmission, sent modulo 1024, is the one of the reference time or next to it.
 bool week_agrees(std::uint32_t sent, std::uint32_t reference_week) {
   const std::uint32_t ahead = (sent + kWeekModulus - reference_week % kWeekModulus) % kWeekModulus;
   return ahead <= 1 || ahead == kWeekModulus - 1;

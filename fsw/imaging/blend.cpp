@@ -21,8 +21,8 @@ class Sums {
     threshold_ = static_cast<int>(detection_sigmas * 3.0 * noise);
   }
 
-  /// Of 3 x 3 pixels, above the background; missing pixels are background. A component keeps off the image's outermost
-  /// pixels, so all nine are there.
+  /// Returns the sum of 3 x 3 pixels, above the background; missing pixels are background. A component keeps off the
+  /// image's outermost pixels, so all nine are there.
   [[nodiscard]] int at(int x, int y) const {
     int sum = -level_;
     for (int j = y - 1; j <= y + 1; ++j) {
@@ -32,7 +32,7 @@ class Sums {
     return sum;
   }
 
-  /// None of its eight neighbours is greater, and none of those that are equal comes first.
+  /// Returns true if none of its eight neighbours is greater, and none of the equal ones comes first.
   [[nodiscard]] bool is_maximum(int x, int y, const Component& c) const {
     const int here = at(x, y);
     for (int j = std::max(y - 1, c.y_min); j <= std::min(y + 1, c.y_max); ++j) {
@@ -45,7 +45,7 @@ class Sums {
     return true;
   }
 
-  /// Whether the fainter of two peaks exceeds the minimum on the straight path between them.
+  /// Returns true if the fainter of two peaks exceeds the minimum on the straight path between them.
   [[nodiscard]] bool are_apart(const Blend::Peak& bright, const Blend::Peak& faint) const {
     const int dx = faint.x - bright.x;
     const int dy = faint.y - bright.y;

@@ -17,8 +17,7 @@ constexpr int pixels_of(const image_tile& tile) {
   return int{tile.width} * int{tile.height};
 }
 
-/// Whether the tile's fields are consistent: then its pixels lie within its image and its data within its
-/// bytes.
+/// Returns kOk if the tile's fields are consistent: then its pixels lie within its image and its data within its bytes.
 Status check(const image_tile& tile) {
   if (tile.bits != 8 && tile.bits != 12) return Status::kInvalidArgument;
   if (tile.image < 0 || tile.width < 1 || tile.height < 1) return Status::kInvalidArgument;

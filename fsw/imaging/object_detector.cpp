@@ -11,8 +11,8 @@ namespace {
 /// The image of a point extends to at most this multiple of its own width, with smear; wider components are measured
 /// as a whole, unless they are several points.
 constexpr double kWidestPoint = 2.0;
-/// From this multiple of a point's width on it may be several points, if it has no more pixels than these would have: a
-/// resolved spacecraft has bright spots too.
+/// Smallest multiple of a point's width at which an object may be several points, if it has no more pixels than these
+/// would have: a resolved spacecraft has bright spots too.
 constexpr double kWiderThanPoint = 1.3;
 constexpr int kMaxBlendedPixels = 250;
 /// Around a bright object noise raises parts of its halo above the threshold: within this number of pixels, and fainter
@@ -206,7 +206,7 @@ bool ObjectDetector::touches_missing(int y, const Run& run) const {
   return false;
 }
 
-/// Whether a component kept lies in or beside the box of a much brighter one.
+/// Returns true if a component kept lies in or beside the box of a much brighter one.
 bool ObjectDetector::is_fragment(std::size_t k) const {
   const std::span<const Component> kept = components_.kept();
   const Component& c = kept[k];

@@ -73,7 +73,7 @@ inline Block<kGroups> add_window(Block<kGroups> block, const Window& window, con
   return block;
 }
 
-/// Likewise for the first layer, whose single channel does not fill four lanes.
+/// Computes the sums of the first layer, whose single channel does not fill four lanes.
 template <int kGroups>
 inline Block<kGroups> add_grey_window(Block<kGroups> block, const Window& window, const float* weights) {
   const std::ptrdiff_t step = window.cell_step;

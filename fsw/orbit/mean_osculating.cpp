@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kMaxTheoryEccentricity = 0.9;
 constexpr double kMinInclinationDistance = 1e-4;  ///< rad, from 0 and from pi
-constexpr double kCriticalBand = 0.02;            ///< of |1 - 5 cos^2 i|, where the long-period terms are resonant
+constexpr double kCriticalBand = 0.02;            ///< width in |1 - 5 cos^2 i|: long-period terms are resonant
 constexpr double kTolerance = 1e-12;
 constexpr int kMaxIterations = 30;
 
@@ -34,7 +34,7 @@ struct Corrections {
   double dey = 0.0;
   double di = 0.0;
   double draan = 0.0;
-  double dlongitude = 0.0;  ///< of w + M + raan
+  double dlongitude = 0.0;  ///< change of w + M + raan
 };
 
 Inclination inclination(double i) {

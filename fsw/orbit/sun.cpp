@@ -5,7 +5,7 @@
 namespace vbar::fsw::orbit {
 namespace {
 
-constexpr double kObliquity = 23.43929111 * math::kDegree;  // of J2000
+constexpr double kObliquity = 23.43929111 * math::kDegree;  // obliquity of the ecliptic at J2000
 constexpr double kSpeedOfLight = 299'792'458.0;
 
 // J2000.0 is 7300 days and 12 hours after the beginning of GPS time; TT = GPS + 51.184 s.
@@ -40,7 +40,7 @@ double jupiter_longitude(double t) {
 }
 
 constexpr double kSemiMajorAxis = 149'598'261e3;
-constexpr double kCircularSpeed = 29'784.7;       // of the barycentre of Earth and Moon
+constexpr double kCircularSpeed = 29'784.7;       // speed of the barycentre of Earth and Moon
 constexpr double kEarthFromBarycentre = 4.671e6;  // mean
 constexpr double kEarthSpeedByMoon = 12.43;
 constexpr double kSunSpeedByJupiter = 12.47;
@@ -61,7 +61,7 @@ double true_longitude(double t) {
          13.0 / 12.0 * e * e * e * math::sin(3.0 * m) + perturbations(t);
 }
 
-/// From ecliptic axes, z towards its pole.
+/// Returns the equatorial vector of one in ecliptic axes, z towards the ecliptic's pole.
 Vector3 equatorial(double x, double y, double z) {
   const double c = math::cos(kObliquity);
   const double s = math::sin(kObliquity);

@@ -66,7 +66,7 @@ void StarIdentifier::make_pattern(std::span<const ObservedStar> objects, std::si
   const double pair_variance = first.sigma_rad * first.sigma_rad + second.sigma_rad * second.sigma_rad;
   pattern_.others = 0;
   for (std::size_t k = 0; k < count; ++k) {
-    // From both ends of the order of brightness: bright objects may all be false, and so may faint ones.
+    // The order of brightness is used from both ends: bright objects may all be false, and so may faint ones.
     const std::size_t place = k % 2 == 0 ? k / 2 : count - 1 - k / 2;
     if (place == i || place == j) continue;
     const ObservedStar& other = objects[order_[place]];

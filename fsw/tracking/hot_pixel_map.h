@@ -16,7 +16,7 @@ struct HotPixelSettings {
   double min_sharpness = 0.5;  ///< smallest share of its light in one pixel
   double place_px = 0.6;       ///< largest distance of its centroid from the first one, each axis
   int sightings = 4;           ///< number of sightings that makes it a known hot pixel
-  int forget_after = 60;       ///< number of images without a sighting until it is forgotten
+  int forget_after = 60;       ///< number of images without a sighting until it is discarded
 };
 
 class HotPixelMap {

@@ -132,7 +132,7 @@ void TargetTracker::select_eligible(const TrackerInput& input) {
       work_.has_prediction && is_narrow(settings_.prediction_gate, determinant_of(about_prediction));
 }
 
-/// Whether few other objects are to be expected in a gate with this determinant of the covariance.
+/// Returns true if few other objects are to be expected in a gate with this determinant of the covariance.
 bool TargetTracker::is_narrow(double gate, double determinant) const {
   return math::kPi * gate * math::sqrt(determinant) * math::exp(work_.log_density) < kNarrowGate;
 }

@@ -139,7 +139,7 @@ void DatagramPort::read() {
 }
 
 void DatagramPort::drain() {
-  // As many as a flood may hold the event loop for.
+  // Limit of a call, so that a flood does not hold the event loop for long.
   constexpr int kAtATime = 256;
   for (int count = 0; count < kAtATime && receive_; ++count) {
     Endpoint sender;

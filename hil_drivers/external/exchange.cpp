@@ -212,7 +212,7 @@ class TruthReader {
   StatedTruth stated_;
 };
 
-/// Whether the payload is a valid message of the packet's APID.
+/// Returns true if the payload is a valid message of the packet's APID.
 bool holds_its_message(const PacketView& packet) {
   bool is_valid = false;
   fsw::packets::for_each_message([&]<class Message>() {

@@ -28,7 +28,7 @@ fsw::packets::PacketHeader header_of(std::uint8_t spacecraft, fsw::GpsTime time)
   return header;
 }
 
-/// What `call` throws, as one sentence that names the truth.
+/// Calls `call`; its exception becomes one sentence that names the truth.
 template <class Call>
 void naming_the_truth(const Call& call) {
   try {

@@ -66,7 +66,8 @@ void ReceiverLink::remember(const BodyTruth& truth) {
   while (truth.time - attitudes_.front().time > kMemory) attitudes_.pop_front();
 }
 
-/// That of the nearest sample: half a sample period away at most, which the flight software bridges by the rate.
+/// Returns the attitude of the nearest sample: half a sample period away at most, which the flight software bridges by
+/// the rate.
 std::optional<twins::gnss::EpochAttitude> ReceiverLink::attitude_at(GpsTime epoch) const {
   if (attitudes_.empty() || epoch < attitudes_.front().time) return std::nullopt;
   const auto distance = [&](const Sample& sample) {

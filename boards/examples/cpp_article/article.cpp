@@ -101,7 +101,7 @@ class Article {
     const auto rotated = [&](const Vector& a) { return Vector{dot(axis_r, a), dot(axis_t, a), dot(axis_n, a)}; };
     const Vector position = rotated(vector(states_.target_position_eci) - r);
     const Vector velocity = rotated(vector(states_.target_velocity_eci) - v);
-    const Vector rate{0.0, 0.0, norm(h) / dot(r, r)};  // of the frame
+    const Vector rate{0.0, 0.0, norm(h) / dot(r, r)};  // rate of the frame
     return {position, velocity - cross(rate, position)};
   }
 

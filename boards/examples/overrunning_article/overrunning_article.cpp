@@ -13,7 +13,7 @@ namespace {
 using vbar::fsw::Status;
 
 struct OverrunningArticle {
-  std::int64_t turns = 0;  ///< of all steps, up to overflow
+  std::int64_t turns = 0;  ///< sum over all steps, up to overflow
 };
 
 vbar_status as_c(Status status) {

@@ -20,7 +20,7 @@ using boost::system::error_code;
 /// Subscribers that have ended are removed at the next edge; more than this at once are an error of a client.
 constexpr std::size_t kMaxSubscribers = 16;
 
-/// Whether a program is bound to the path, as opposed to a file that one left.
+/// Returns true if a program is bound to the path, as opposed to a file that an ended program left.
 bool is_in_use(asio::io_context& context, const datagram_protocol::endpoint& endpoint) {
   datagram_protocol::socket probe(context);
   error_code error;

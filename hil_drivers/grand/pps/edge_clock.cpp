@@ -15,8 +15,8 @@ using namespace std::chrono_literals;
 
 /// Edges are looked for at least this often while the clock sleeps.
 constexpr Span kLongestSleep = 100ms;
-/// If edges were not asked for during a longer time (the host was paused), the silence counts from the next look on:
-/// edges may have been lost on this side.
+/// Longest time between two requests for edges. After a longer one (the host was paused) the silence counts from the
+/// next request on: edges may have been lost on this side.
 constexpr Span kPause = 2s;
 /// An edge cannot be in the future; more than this is a wrong time stamp.
 constexpr Span kFutureTolerance = 1s;

@@ -75,7 +75,7 @@ class KernelEdges final : public EdgeSource {
     pps_params_t parameters{};
     if (::time_pps_getparams(handle_, &parameters) != 0) fail("time_pps_getparams");
     constexpr int kNeeded = PPS_CAPTUREASSERT | PPS_TSFMT_TSPEC;
-    // To set what is set already may need a permission that to read does not.
+    // Setting a mode that is set already may need a permission that reading does not.
     if ((parameters.mode & kNeeded) == kNeeded) return;
     parameters.api_version = PPS_API_VERS_1;
     parameters.mode |= kNeeded;

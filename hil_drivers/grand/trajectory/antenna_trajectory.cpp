@@ -64,7 +64,7 @@ Vector3 two_body_jerk(const Vector3& position, const Vector3& velocity) {
   return -gm_r3 * (velocity - 3.0 * position.dot(velocity) / r2 * position);
 }
 
-/// As an observer in the rotating Earth-fixed frame sees it.
+/// Returns the motion as an observer in the rotating Earth-fixed frame sees it.
 Motion earth_fixed(const Matrix3& R_ecef_eci, const Motion& eci) {
   const auto w = [](const Vector3& v) { return Vector3(kEarthRate_ecef.cross(v)); };
   const Vector3 r = R_ecef_eci * eci[0];

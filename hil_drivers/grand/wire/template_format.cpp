@@ -68,7 +68,7 @@ auto with_type(FieldType type, auto use) {
   return use(double{});
 }
 
-/// Whether `value`, rounded for an integer type, is a value of the type.
+/// Returns true if `value`, rounded for an integer type, is a value of the type.
 template <class Number>
 bool fits(double value) {
   if constexpr (std::is_floating_point_v<Number>) {

@@ -82,7 +82,7 @@ void LineServer::handle(const std::string& line, Connection& connection) {
     case FaultEffect::kNone:
       break;
   }
-  // What was sent before the line has arrived before it.
+  // Samples sent before the line have arrived before it.
   drain();
   follow_engine();
   try {

@@ -20,7 +20,7 @@ BenchEngine::SampleFault sample_fault(FaultKind kind) {
   return BenchEngine::SampleFault::kLost;
 }
 
-/// For the faults of a line that LineImpairment makes.
+/// Returns the kind of impairment of a line's fault.
 LineImpairment::Kind impairment(FaultKind kind) {
   switch (kind) {
     case FaultKind::kLineHalfMessages:
@@ -173,7 +173,7 @@ void FaultInjector::end(Active& active) {
   }
 }
 
-// What counts the effect of a fault; a fault that acts at once has none.
+// Counter of the effect of a fault; a fault that acts at once has none.
 std::uint64_t FaultInjector::effect_count(const Fault& fault) const {
   Vehicle& vehicle = engine_->vehicle(fault.vehicle);
   switch (fault.kind) {

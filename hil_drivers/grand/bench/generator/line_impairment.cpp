@@ -56,7 +56,7 @@ std::vector<std::uint8_t> LineImpairment::from_host(std::span<const std::uint8_t
   return heard;
 }
 
-// Beginnings of binary messages among them, so that a decoder has something to refuse.
+// Beginnings of binary messages are among them, so that a decoder has something to reject.
 void LineImpairment::add_random(std::vector<std::uint8_t>& bytes, std::size_t count, Kind kind) {
   while (count > 0) {
     const bool sync = count >= 4 && stream_.uniform() < kSyncProbability;

@@ -42,9 +42,8 @@ class VehicleMotion {
  public:
   static constexpr double kSnapDistance_m = 10.0;
   static constexpr fsw::Duration kMaxLead = fsw::duration_of_seconds(10);
-  static constexpr fsw::Duration kExtrapolationLimit =
-      fsw::duration_of_seconds(1);                                               ///< of the sample's age; then state 1
-  static constexpr fsw::Duration kRadiationLimit = fsw::duration_of_seconds(5);  ///< of the sample's age; then no RF
+  static constexpr fsw::Duration kExtrapolationLimit = fsw::duration_of_seconds(1);  ///< sample's age; then state 1
+  static constexpr fsw::Duration kRadiationLimit = fsw::duration_of_seconds(5);      ///< sample's age; then no RF
 
   explicit VehicleMotion(fsw::Duration join) : join_(join) {}
 

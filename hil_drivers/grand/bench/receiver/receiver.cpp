@@ -434,7 +434,8 @@ Response Receiver::Core::log(int port, const Command& command) {
   return {};
 }
 
-// What there is now. Messages of satellites wait for the clock: without a time in the header readers drop them.
+// Sends the present content of a log. Messages of satellites wait for the clock: without a time in the header readers
+// drop them.
 void Receiver::Core::send_once(const LogRequest& request) {
   if (request.kind->log_class == LogClass::kMessage && !engine_->time_is_set()) {
     until_time_known_.push_back(request);

@@ -24,7 +24,7 @@ constexpr int kReceiveBuffer_bytes = 1 << 20;
 
 io::FileDescriptor new_fifo(const std::filesystem::path& file) {
   if (::mkfifo(file.c_str(), 0600) != 0) throw std::system_error(errno, std::generic_category(), file.string());
-  // For reading too: opening does not wait for the reader, and writing does not fail before it is there.
+  // Opened for reading too: opening does not wait for the reader, and writing does not fail before it is there.
   io::FileDescriptor fifo(::open(file.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC));
   if (fifo.get() < 0) throw std::system_error(errno, std::generic_category(), file.string());
   ::fcntl(fifo.get(), F_SETPIPE_SZ, kPipeBytes);  // less is allowed: then it is written in smaller parts
