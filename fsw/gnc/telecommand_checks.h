@@ -1,14 +1,14 @@
 #pragma once
-// Whether the values of a telecommand are within their valid ranges, of each kind by itself. A new telecommand needs
-// its is_valid: the store does not compile without it.
+// Range checks of the values of a telecommand, each kind by itself. A new telecommand needs its is_valid: the store
+// does not compile without it.
 
 #include "fsw/packets/messages.h"
 
 namespace vbar::fsw::gnc {
 
-// Those of navigation stand with their conversion: trunk_configuration.h, and the folders of fsw/sources.
+// The checks of navigation are beside their conversion: trunk_configuration.h, and the folders of fsw/sources.
 
-/// One to sixteen waypoints in order of time, within the domain of the relative-orbit models.
+/// Accepts one to sixteen waypoints in order of time, within the domain of the relative-orbit models.
 [[nodiscard]] bool is_valid(const waypoint_table& table);
 [[nodiscard]] bool is_valid(const gnc_configuration& configuration);
 [[nodiscard]] bool is_valid(const mode_command& command);

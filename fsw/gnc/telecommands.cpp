@@ -14,10 +14,11 @@ using sources::is_valid;
 
 namespace {
 
-// The last of the list stands for all: the list of vbar.lcm is that of the code.
+// The last value stands for all: the list of vbar.lcm is that of the code.
 static_assert(static_cast<int>(TelecommandStatus::kContradiction) == telemetry_telecommand::kStatusContradiction);
 
-/// Older time tag, or the same with an older sequence count, which wraps at 14 bits. A repetition is not older.
+/// Returns whether `tag` has an older time, or the same time and an older sequence count, which wraps at 14 bits. A
+/// repetition is not older.
 bool is_older(const FilingTag& tag, const FilingTag& than) {
   if (tag.time != than.time) return tag.time < than.time;
   constexpr unsigned kCounts = 0x4000;
@@ -88,7 +89,8 @@ const Message* Telecommands::proposed_or_in_force(std::size_t unit) const {
   return known.proposed ? &*known.proposed : in_force<Message>(unit);
 }
 
-/// An image feeds one source: of a camera for bearings and keypoints the exposure decides which, and there are two.
+/// Returns whether each image feeds one measurement source. For a camera that serves bearings and keypoints the
+/// exposure decides, so that its two exposures must differ.
 bool Telecommands::are_consistent() const {
   constexpr std::int32_t kBoth = sources::BearingSource::kUse | sources::KeypointSource::kUse;
   const auto* navigation = proposed_or_in_force<navigation_configuration>(0);
@@ -102,7 +104,7 @@ bool Telecommands::are_consistent() const {
   return true;
 }
 
-/// Those in force agree with each other, so that without the proposals nothing contradicts.
+/// Rejects proposals that contradict each other or a telecommand in force. Those in force agree with each other.
 void Telecommands::refuse_contradictions() {
   if (!are_consistent()) refuse_proposals<pose_configuration>();
   if (!are_consistent()) refuse_proposals<angles_only_configuration>();
