@@ -29,7 +29,7 @@ double square(double x) {
   return x * x;
 }
 
-/// Returns 1 sigma of the ratio of a burn of `dv` m/s.
+/// Returns the variance of the ratio of a burn of `dv` m/s.
 double ratio_variance(double dv) {
   return square(kRatioSigma) + square(kImpulseSigma / dv);
 }

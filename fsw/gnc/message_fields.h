@@ -25,7 +25,7 @@ inline void copy(const Vector6& from, double (&to)[6]) {
   for (int k = 0; k < 6; ++k) to[k] = from(k);
 }
 
-/// Copies a matrix in row-major order.
+/// Copies the lower triangle of a symmetric matrix, by rows.
 void copy_lower_triangle(const Matrix6& from, double (&to)[21]);
 
 /// Writes the Hamilton quaternion w, x, y, z of a rotation matrix that transforms components (Shepperd 1978).
