@@ -10,8 +10,8 @@
 
 namespace vbar::boards {
 
-/// Answer of a step, kept until the next step so that it can be sent again. Full: the newest packet is dropped,
-/// counted.
+/// Keeps the answer of a step until the next step, so that it can be sent again. If it is full, the newest packet is
+/// dropped and counted.
 inline constexpr std::size_t kOutboxBytes = std::size_t{128} * 1024;
 inline constexpr std::size_t kOutboxPackets = 256;
 
@@ -19,14 +19,14 @@ class Outbox {  // NOLINT(cppcoreguidelines-pro-type-member-init): see bytes_
  public:
   void clear();
 
-  /// Adds a packet of the flight software. False, and nothing is kept, if its size is not that of a packet, or if there
-  /// would be no room left for a report.
+  /// Adds a packet of the flight software. Returns false and keeps nothing if its size is not that of a packet, or if
+  /// no room would be left for a report.
   [[nodiscard]] bool append(std::span<const std::uint8_t> packet);
   /// Adds the packet that closes the answer. There is always room for one.
   void append_report(std::span<const std::uint8_t> packet);
 
   [[nodiscard]] std::uint16_t count() const { return count_; }
-  /// Packet `index` below count(), in order of arrival.
+  /// Returns packet `index` below count(), in order of arrival.
   [[nodiscard]] std::span<const std::uint8_t> packet(std::uint16_t index) const;
 
  private:
@@ -34,7 +34,7 @@ class Outbox {  // NOLINT(cppcoreguidelines-pro-type-member-init): see bytes_
 
   // Left uninitialised on purpose: start-up need not write elements beyond count_.
   std::array<std::uint8_t, kOutboxBytes> bytes_;
-  std::array<std::uint32_t, kOutboxPackets> end_;  ///< of packet i in bytes_; it begins where its predecessor ends
+  std::array<std::uint32_t, kOutboxPackets> end_;  ///< end of packet i in bytes_; it begins where its predecessor ends
   std::uint16_t count_ = 0;
 };
 

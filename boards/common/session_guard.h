@@ -12,15 +12,16 @@
 
 namespace vbar::boards {
 
-/// `Sender`: a sender, as far as the board's interfaces distinguish senders; it has operator==.
+/// Admits the frames of one peer. `Sender` identifies a sender by what the interfaces of the board distinguish; it has
+/// operator==.
 template <class Sender>
 class SessionGuard {
  public:
-  /// `silence` in the unit of the times given to `admits`: time without frames of the peer after which another may take
-  /// over.
+  /// `silence` is the time without frames of the peer after which another sender may replace it, in the unit of the
+  /// times given to `admits`.
   explicit SessionGuard(std::uint64_t silence) : silence_(silence) {}
 
-  /// True if the frame, received at `now`, is for the flight software. A kHello that is admitted makes its sender the
+  /// Returns true if the frame, received at `now`, is for the flight software. An admitted kHello makes its sender the
   /// peer.
   bool admits(const Sender& sender, std::span<const std::uint8_t> frame, std::uint64_t now) {
     if (has_peer_ && sender == peer_) {
@@ -35,18 +36,19 @@ class SessionGuard {
     return true;
   }
 
-  /// After a reset, at `now`: the peer of the session that it ended, which is answered until another says kHello.
+  /// Restores the peer of the session that a reset has ended, at `now`. It is answered until another sender sends a
+  /// kHello.
   void resume(const Sender& peer, std::uint64_t now) {
     peer_ = peer;
     has_peer_ = true;
     last_heard_ = now;
   }
 
-  /// The peer sent kGoodbye.
+  /// Ends the session, when the peer has sent kGoodbye.
   void end_session() { has_peer_ = false; }
 
   [[nodiscard]] bool has_peer() const { return has_peer_; }
-  /// Destination of answers; valid while has_peer().
+  /// Returns the destination of answers; valid while has_peer().
   [[nodiscard]] const Sender& peer() const { return peer_; }
 
  private:
