@@ -33,7 +33,7 @@ std::span<const std::uint8_t> bytes_of(const char* text) {
   return {reinterpret_cast<const std::uint8_t*>(text), length};  // NOLINT: ASCII on the wire
 }
 
-/// The time of the step that `packet` starts; a status if it is not a tick.
+/// Returns the time of the step that `packet` starts; a status if it is not a tick.
 fsw::Result<fsw::GpsTime> tick_time(std::span<const std::uint8_t> packet) {
   const fsw::Result<fsw::packets::PacketView> view = fsw::packets::parse_packet(packet);
   if (!view.ok()) return view.status();
@@ -254,7 +254,8 @@ void FlightExecutive::deliver_receiver_bytes(fsw::GpsTime step_time) {
   WiredPiece piece;
   for (std::size_t k = 0; k < ReceiverPort::kPacketsPerStep; ++k) {
     receiver_.next_piece(step_time, piece);
-    // Only what the host is given as well: otherwise the run could not be replayed. What finds no room waits.
+    // The flight software receives only bytes that the host receives as well: otherwise the run could not be replayed.
+    // Bytes without room in the answer wait for the next step.
     if (piece.count == 0 || !outbox_.append(std::span(piece.mirror).first(piece.mirror_size))) return;
     static_cast<void>(vbar_gnc_receive(gnc_state_.data(), piece.input.data(), piece.input_size));
     receiver_.accept(piece);
@@ -290,7 +291,7 @@ Activity FlightExecutive::on_data(const FrameView& frame) {
     if (const fsw::Result<fsw::GpsTime> time = tick_time(frame.payload); time.ok())
       deliver_receiver_bytes(time.value());
   }
-  // A packet that the flight software refuses is in its own counters; for the barrier it has arrived.
+  // The flight software counts the packets that it rejects; for the barrier they have arrived.
   static_cast<void>(vbar_gnc_receive(gnc_state_.data(), frame.payload.data(), frame.payload.size()));
   if (!inputs_.complete()) return Activity::kIdle;
   close_step(frame.payload);

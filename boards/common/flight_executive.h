@@ -19,10 +19,10 @@
 
 namespace vbar::boards {
 
-/// Unit of Platform::counter, as step_report.unit has it.
+/// Unit of Platform::counter, with the numbers of step_report.unit.
 enum class CounterUnit : std::int8_t { kNone = 0, kEmulatedTimerTicks = 1, kCycles = 2 };
 
-/// Functions of a board. All receive `context`; none may block indefinitely.
+/// Holds the functions of a board. All receive `context`; none may block indefinitely.
 struct Platform {
   void* context = nullptr;
   const char* name = "";                                                       ///< ASCII, shown to the host
@@ -32,16 +32,15 @@ struct Platform {
   CounterUnit counter_unit = CounterUnit::kNone;
   /// Budget of a step in units of `counter`, unless the hello states another; 0: none.
   std::uint64_t step_budget = 0;
-  /// For a watchdog, and for what it reports after a reset: notified of each session, of the first packet of each step,
-  /// and of the end of the step. They may be null.
+  /// Notify a watchdog of each session, of the first packet of each step and of the end of the step. Each may be null.
   void (*session_begins)(void* context, std::uint32_t session, std::uint64_t step_budget) = nullptr;
   void (*step_begins)(void* context, std::uint32_t step) = nullptr;
   void (*step_ends)(void* context, bool within_budget) = nullptr;
-  /// Makes the line on which a GNSS receiver is wired to the board ready at this rate; bytes that it brought before are
-  /// discarded. False if there is no such line, or if the host uses it as its link. 0 baud: the session has no receiver
+  /// Prepares the line on which a GNSS receiver is wired to the board for this rate, and discards the bytes received
+  /// before. Returns false without such a line, or if the host uses it as its link. 0 baud: the session has no receiver
   /// there. Null: the board has no such line.
   bool (*open_receiver)(void* context, std::uint32_t baud) = nullptr;
-  /// Moves bytes that the line has brought to `out` and returns their number, 0 if there are none. Null as above.
+  /// Moves the received bytes of that line to `out` and returns their number. Null as above.
   std::size_t (*read_receiver)(void* context, std::span<std::uint8_t> out) = nullptr;
 };
 
@@ -51,7 +50,7 @@ inline constexpr std::size_t kGncStateAlignment = 64;
 
 enum class Activity : std::uint8_t { kIdle, kStepped, kGoodbye };
 
-/// The payload of a kHello (fsw/link/frame.h).
+/// Holds the payload of a kHello (fsw/link/frame.h).
 struct Hello {
   std::uint8_t spacecraft = 0;
   std::optional<std::uint32_t> receiver_baud;  ///< of the line on which a receiver is wired to the board
@@ -61,13 +60,13 @@ struct Hello {
   static std::optional<Hello> parse(std::span<const std::uint8_t> payload);
 };
 
-/// One per image, in static memory (it is large). Not thread-safe, not re-entrant, and it stays where it is: the flight
-/// software is given its address.
+/// Executes the protocol of the link. There is one executive per image, in static memory (it is large). It is neither
+/// thread-safe nor re-entrant, and does not move: the flight software holds its address.
 ///
 /// A kHello of another session constructs a new flight software and discards all else; one of the same session is only
-/// answered again. A flight software that does not fit this executive is never run: the kHelloAck states why ("error:
-/// ..."). A step that exceeds its budget is the last: its answer remains available, and what is sent of the next step
-/// is answered by a kHelloAck with the reason.
+/// answered again. A flight software that does not fit this executive is never run: the kHelloAck states the reason
+/// ("error: ..."). A step that exceeds its budget is the last one: its answer remains available, and frames of the next
+/// step are answered by a kHelloAck with the reason.
 class FlightExecutive {
  public:
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): gnc_state_ is cleared when a session begins
@@ -75,30 +74,31 @@ class FlightExecutive {
   FlightExecutive(const FlightExecutive&) = delete;
   FlightExecutive& operator=(const FlightExecutive&) = delete;
 
-  /// Takes one received frame, whole and uncoded; sends what the protocol asks for; runs the step it completes.
-  /// kStepped also for a batch that ended without a tick: its answer is the report alone, and nothing was stepped.
+  /// Processes one received frame, whole and uncoded: answers it, and runs the step that it completes. Returns kStepped
+  /// also for a batch without a tick: its answer is the report alone, and nothing was stepped.
   Activity on_frame(std::span<const std::uint8_t> frame);
 
-  /// Frames a board dropped before they became frames (COBS errors, foreign datagrams): into the step report.
+  /// Counts frames that a board dropped before they were complete (COBS errors, foreign datagrams), for the step
+  /// report.
   void count_rejected(std::uint32_t frames) { counters_.rejected += frames; }
 
-  /// True during a session whose receiver is wired to the board.
+  /// Returns true during a session whose receiver is wired to the board.
   [[nodiscard]] bool has_receiver() const { return receiver_.is_open(); }
 
-  /// To be called once, after a reset that ended `session`: until the next hello, the host of that session receives
-  /// `error` ("error: ...", at most 120 characters, which must remain).
+  /// States that a reset has ended `session`; to be called once. Until the next hello, the host of that session
+  /// receives `error` ("error: ...", at most 120 characters, which must remain valid).
   void lose_session(std::uint32_t session, const char* error);
 
-  /// Takes what the receiver's line has brought. A board calls it when bytes have arrived, so that its own buffer does
-  /// not overflow between two ticks.
+  /// Reads the bytes that the line of the receiver has brought. A board calls it when bytes have arrived, so that its
+  /// own buffer does not overflow between two ticks.
   void read_receiver();
 
  private:
-  /// Since the session began, for the step report.
+  /// Counts since the session began, for the step report.
   struct Counters {
     std::uint32_t received = 0;         ///< frames handed to on_frame
-    std::uint32_t rejected = 0;         ///< of these (or before them): broken, of another session, out of order
-    std::uint32_t duplicated = 0;       ///< of these: held or run already
+    std::uint32_t rejected = 0;         ///< among these (or before them): broken, of another session, out of order
+    std::uint32_t duplicated = 0;       ///< among these: held or run already
     std::uint32_t packets_dropped = 0;  ///< from the flight software: outbox full, or not of a packet's size
     std::uint32_t ticks_missing = 0;    ///< batches that did not end in a tick
   };
@@ -108,7 +108,7 @@ class FlightExecutive {
   void on_hello(const fsw::link::FrameView& frame);
   void answer_hello();
   Activity on_data(const fsw::link::FrameView& frame);
-  /// True for the step of the answer in hand and for every step before it.
+  /// Returns true for the step of the present answer and for every step before it.
   [[nodiscard]] bool already_run(std::uint32_t step) const;
   void on_poll(const fsw::link::FrameHeader& header);
 
@@ -125,7 +125,7 @@ class FlightExecutive {
   void on_receiver_poll();
   void on_snapshot_poll(const fsw::link::FrameView& frame);
   void on_snapshot_piece(const fsw::link::FrameView& frame);
-  /// Gives the flight software what the receiver's line has brought, and the host the same bytes in the answer.
+  /// Passes the bytes of the receiver's line to the flight software, and to the host in the answer.
   void deliver_receiver_bytes(fsw::GpsTime step_time);
   void begin_step(std::uint32_t step);
   void close_step(std::span<const std::uint8_t> last_packet);

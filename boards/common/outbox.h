@@ -1,5 +1,5 @@
 #pragma once
-// Packets of one answer, kept until the next step so that any of them can be sent again.
+// The packets of one answer, kept until the next step so that any of them can be sent again.
 
 #include <array>
 #include <cstddef>
@@ -10,7 +10,8 @@
 
 namespace vbar::boards {
 
-/// Room for the answer of a step. If it is full the newest packet is dropped and counted.
+/// Keeps the answer of a step until the next step, so that it can be sent again. If it is full, the newest packet is
+/// dropped and counted.
 inline constexpr std::size_t kOutboxBytes = std::size_t{128} * 1024;
 inline constexpr std::size_t kOutboxPackets = 256;
 
@@ -18,8 +19,8 @@ class Outbox {  // NOLINT(cppcoreguidelines-pro-type-member-init): see bytes_
  public:
   void clear();
 
-  /// Adds a packet of the flight software. Returns false, and keeps nothing, if its size is not that of a packet, or if
-  /// there would be no room left for a report.
+  /// Adds a packet of the flight software. Returns false and keeps nothing if its size is not that of a packet, or if
+  /// no room would be left for a report.
   [[nodiscard]] bool append(std::span<const std::uint8_t> packet);
   /// Adds the packet that closes the answer. There is always room for one.
   void append_report(std::span<const std::uint8_t> packet);

@@ -5,7 +5,7 @@
 namespace vbar::boards {
 namespace {
 
-/// Number of sequence counts of a packet header: 14 bits.
+/// Mask of the sequence count in a packet header: 14 bits.
 constexpr std::uint16_t kSequenceCounts = 0x4000;
 
 /// Copies `out.size()` bytes of a ring from `begin` on.

@@ -12,17 +12,17 @@
 
 namespace vbar::boards {
 
-/// Admits one sender to a session. `Sender` is a sender, as far as the board's interfaces distinguish senders; it has
+/// Admits the frames of one peer. `Sender` identifies a sender by what the interfaces of the board distinguish; it has
 /// operator==.
 template <class Sender>
 class SessionGuard {
  public:
-  /// `silence`, in the unit of the times given to `admits`, is the time without frames of the peer after which another
-  /// sender may become the peer.
+  /// `silence` is the time without frames of the peer after which another sender may replace it, in the unit of the
+  /// times given to `admits`.
   explicit SessionGuard(std::uint64_t silence) : silence_(silence) {}
 
-  /// Returns true if the frame, received at `now`, is for the flight software. A kHello that is admitted makes its
-  /// sender the peer.
+  /// Returns true if the frame, received at `now`, is for the flight software. An admitted kHello makes its sender the
+  /// peer.
   bool admits(const Sender& sender, std::span<const std::uint8_t> frame, std::uint64_t now) {
     if (has_peer_ && sender == peer_) {
       last_heard_ = now;
@@ -36,15 +36,15 @@ class SessionGuard {
     return true;
   }
 
-  /// Restores the peer after a reset at `now`: that of the session which the reset ended. It is answered until another
-  /// sender says kHello.
+  /// Restores the peer of the session that a reset has ended, at `now`. It is answered until another sender sends a
+  /// kHello.
   void resume(const Sender& peer, std::uint64_t now) {
     peer_ = peer;
     has_peer_ = true;
     last_heard_ = now;
   }
 
-  /// Ends the session after the peer's kGoodbye.
+  /// Ends the session, when the peer has sent kGoodbye.
   void end_session() { has_peer_ = false; }
 
   [[nodiscard]] bool has_peer() const { return has_peer_; }

@@ -21,7 +21,7 @@ constexpr double kAcceptedResidual = 1e-6;
 // Inclination changes below this, m, are rounding errors.
 constexpr double kNoInclinationChange = 1e-9;
 
-// Impulses of a manoeuvring deputy.
+// Holds the impulses of a manoeuvring deputy.
 struct DeputyBurns {
   static constexpr std::size_t kMax = TangentialBurns::kMax + 1;
   std::array<double, kMax> offsets{};  ///< s into the window
@@ -39,7 +39,7 @@ struct DeputyBurns {
   }
 };
 
-// The problem with derived quantities common to all steps.
+// Holds the problem with derived quantities common to all steps.
 struct Model {
   const ControlProblem& problem;
   const ClosedFormSettings& settings;
@@ -51,7 +51,7 @@ struct Model {
     return arrival_effect(problem.servicer_mean, problem.start, problem.start + nearest_duration(offset),
                           problem.arrival);
   }
-  // Residual of the pseudo-state after `burns`.
+  // Returns the residual of the pseudo-state after `burns`.
   [[nodiscard]] Vector6 residual(const DeputyBurns& burns) const {
     Vector6 left = problem.pseudo_state;
     for (std::size_t k = 0; k < burns.count; ++k) left -= effect(burns.offsets[k]) * burns.dv[k];
@@ -59,7 +59,7 @@ struct Model {
   }
 };
 
-// Normal impulses: each of them achieves the inclination change by itself.
+// Holds normal impulses, each of which achieves the inclination change by itself.
 struct NormalBurns {
   struct Impulse {
     double offset = 0.0;  ///< s into the window

@@ -18,20 +18,19 @@
 namespace vbar::fsw::control {
 
 struct ClosedFormSettings {
-  /// Eccentricity changes below this (m, a |de|) have no defined phase; burns may then be at any time.
+  /// Smallest eccentricity change (m, a |de|) with a defined phase; below it, burns may be at any time.
   double eccentricity_floor_m = 1.0;
-  /// A tangential burn moves to the time of a normal one if that is within this interval (s), and R components
-  /// correct the eccentricity vector.
+  /// Interval (s) within which a tangential burn moves to the time of a normal one; R components then correct the
+  /// eccentricity vector.
   double merge_window = 120.0;
-  /// No burn in this interval before arrival (s).
+  /// Interval (s) before arrival without burns.
   double final_coast = 0.0;
 };
 
-/// Burns (of the servicer, signs as in Plan) that achieve the problem's pseudo-state to 1e-6 of it in the linear model
-/// with the exact effects of the burns. Errors of
-/// check_problem(); kInvalidArgument for an empty window; kSingular when the window has
-/// fewer than three burn times or only one parity of them (shorter than about an orbit): the next solver is used;
-/// kDidNotConverge if the coupling iteration does not converge.
+/// Returns burns (of the servicer, signs as in Plan) that achieve the pseudo-state to a relative error of 1e-6 in the
+/// linear model with the exact effects of the burns. Errors of check_problem(); kInvalidArgument for an empty window;
+/// kSingular when the window has fewer than three burn times or only one parity of them (shorter than about an orbit):
+/// the next solver is used; kDidNotConverge if the coupling iteration does not converge.
 Result<Plan> solve_closed_form(const ControlProblem& problem, const ClosedFormSettings& settings = {});
 
 /// The entry of the solver list (solver_list.h).
@@ -40,7 +39,8 @@ struct ClosedForm {
   static constexpr std::string_view kName = "closed_form";
   static constexpr std::string_view kDescription =
       "the closed-form solver for near-circular orbits (Chernick and D'Amico 2018)";
-  /// Beyond it terms of the order of the eccentricity, which the closed form iterates away, dominate.
+  /// Largest mean eccentricity: beyond it terms of the order of the eccentricity, which are removed by iteration,
+  /// dominate.
   static constexpr double kMaxEccentricity = 0.06;
   static constexpr auto kStatus = &telemetry_control::closed_form_status;
 

@@ -8,13 +8,13 @@
 namespace vbar::fsw::control {
 namespace {
 
-/// Intervals of the grid: not longer than the step requested, unless that requires too many.
+/// Returns the number of intervals of the grid: not longer than the step requested, unless that requires too many.
 std::int64_t grid_intervals(Duration horizon, Duration step) {
   const std::int64_t wanted = horizon.ns / step.ns + (horizon.ns % step.ns != 0 ? 1 : 0);
   return std::min(wanted, static_cast<std::int64_t>(kMaxGridTimes) - 1);
 }
 
-/// Candidate times and the effects of impulses there; returns how many.
+/// Fills in the candidate times and the effects of impulses there. Returns their number.
 std::size_t make_grid(const ControlProblem& problem, const KoenigDamicoSettings& settings,
                       KoenigDamicoWorkspace& workspace) {
   const Duration horizon = problem.arrival - problem.start;

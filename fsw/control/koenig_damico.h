@@ -25,7 +25,7 @@ struct KoenigDamicoSettings {
   PrimerSettings primer;
 };
 
-/// Workspace and full account of the last solution; about 120 kB, too large for the stack of a flight computer.
+/// Holds the workspace and the last solution in full; about 120 kB, too large for the stack of a flight computer.
 struct KoenigDamicoWorkspace {
   std::array<Matrix63, kMaxGridTimes> effects;
   std::array<ThrustCost, kMaxGridTimes> costs{};
@@ -34,7 +34,7 @@ struct KoenigDamicoWorkspace {
   PrimerSolution solution;  ///< impulses of the deputy; valid after a solve that returned a plan
 };
 
-/// Burns of the servicer (at most kMaxImpulses, from `start` to `arrival`, both included) that achieve the
+/// Returns burns of the servicer (at most kMaxImpulses, from `start` to `arrival`, both included) that achieve the
 /// pseudo-state at minimum cost, within settings.primer.cost_tolerance of the optimum on the grid. Errors:
 /// kInvalidArgument (settings), kNotFinite, kOutOfRange (orbit or horizon, arrival before start), kSingular (no time
 /// allowed, or too few or too close to reach every state), kDidNotConverge.
@@ -47,7 +47,7 @@ struct KoenigDamico {
   static constexpr std::string_view kName = "koenig_damico";
   static constexpr std::string_view kDescription =
       "the primer-vector solver on a uniform grid of times (Koenig and D'Amico)";
-  /// Beyond it the time grid is too coarse about the perigee.
+  /// Largest mean eccentricity: beyond it the time grid is too coarse about the perigee.
   static constexpr double kMaxEccentricity = 0.11;
   static constexpr auto kStatus = &telemetry_control::koenig_damico_status;
 

@@ -15,11 +15,11 @@ constexpr std::size_t kMaxTimes = 3;
 constexpr double kMaxCondition = 1e5;
 constexpr double kGoodCondition = 1e2;  ///< the middle is used if its condition is not worse than this
 
-/// Times of the middle burn, as parts of the horizon, in order of preference. Their distances to both ends have no
-/// common measure, so a horizon that makes one of them singular leaves others.
+/// Times of the middle burn, as parts of the horizon, in order of preference. Their distances to both ends are
+/// incommensurable, so that a horizon that makes one of them singular leaves others.
 constexpr std::array<double, 5> kMiddlePlaces{0.5, 0.4, 0.65, 0.28, 0.83};
 
-/// The impulses' times and effects, and the spectrum of the weighted system.
+/// Holds the times and effects of the impulses, and the spectrum of the weighted system.
 struct System {
   std::array<GpsTime, kMaxTimes> times{};
   std::array<Matrix63, kMaxTimes> effects{};  ///< m of a*ROE per m/s of the deputy
@@ -42,7 +42,7 @@ Matrix6 weighted_gramian(const System& system, const Vector6& weight) {
   return gramian;
 }
 
-/// Burns at both ends and, with three, at `middle_place` of the horizon.
+/// Makes the system of burns at both ends and, with three burns, at `middle_place` of the horizon.
 Result<System> make_system(const ControlProblem& problem, const LeastSquaresSettings& settings, double middle_place) {
   const Duration horizon = problem.arrival - problem.start;
   const Duration middle = nearest_duration(middle_place * seconds(horizon));
@@ -62,7 +62,7 @@ Result<System> make_system(const ControlProblem& problem, const LeastSquaresSett
   return system;
 }
 
-/// The first place of the middle burn that gives a well-conditioned system, or the best.
+/// Returns the first well-conditioned system over the places of the middle burn, or the best one.
 Result<System> choose_system(const ControlProblem& problem, const LeastSquaresSettings& settings) {
   Result<System> best = make_system(problem, settings, kMiddlePlaces[0]);
   if (settings.burn_count == 2) return best;

@@ -20,18 +20,18 @@ struct LeastSquaresSettings {
   Vector6 weight = Vector6::Ones();  ///< diagonal of W, > 0: weight of the error of each ROE
 };
 
-/// Conditioning of the problem and residual of the plan.
+/// Reports the conditioning of the problem and the residual of the plan.
 struct LeastSquaresReport {
-  double smallest_singular_value = 0.0;  ///< of W A, m per m/s
+  double smallest_singular_value = 0.0;  ///< smallest singular value of W A, m per m/s
   double largest_singular_value = 0.0;
   double residual_m = 0.0;  ///< |A x - a w|, unweighted
   GpsTime middle;           ///< time of the third burn, if there is one
 };
 
-/// Burns of the servicer at the start, between and at the arrival. The one between is in the middle unless that is
-/// a singular spacing (half and whole orbits), then at the best of a few other times. A pseudo-state of zero
-/// gives all burns of the plan as well, of zero size. Errors: kInvalidArgument (settings), kNotFinite, kOutOfRange
-/// (orbit, horizon), kSingular: no choice of times makes the singular values span less than a factor 1e5.
+/// Returns burns of the servicer at the start, between and at the arrival. The burn between is in the middle, or, at a
+/// singular spacing (half and whole orbits), at the best of a few other times. A pseudo-state of zero results in all
+/// burns of the plan with zero size. Errors: kInvalidArgument (settings), kNotFinite, kOutOfRange (orbit, horizon),
+/// kSingular: no choice of times makes the singular values span less than a factor 1e5.
 Result<Plan> solve_least_squares(const ControlProblem& problem, const LeastSquaresSettings& settings = {},
                                  LeastSquaresReport* report = nullptr);
 
@@ -40,6 +40,7 @@ struct LeastSquares {
   static constexpr Solver kId{waypoint::kSolverLeastSquares};
   static constexpr std::string_view kName = "least_squares";
   static constexpr std::string_view kDescription = "the least-squares solver on a uniform grid of times";
+  /// Largest mean eccentricity, as that of the closed form.
   static constexpr double kMaxEccentricity = 0.06;
   static constexpr auto kStatus = &telemetry_control::least_squares_status;
 

@@ -15,19 +15,20 @@ Plan still_possible(const Plan& plan, GpsTime earliest) {
   return possible;
 }
 
-// A plan and its arrival error.
+// Holds a plan and its arrival error.
 struct Candidate {
   Plan plan;
   Vector6 error = Vector6::Zero();
 };
 
-// Limit of the cost of a correction: `error` as a change of inclination, the most expensive, and a share of the burns.
+// Returns the limit of the cost of a correction: `error` as a change of inclination, the most expensive, and a share of
+// the burns.
 double affordable_dv(const LegSituation& situation, const Plan& plan, const Vector6& error, const LegPolicy& policy) {
   const double speed = orbit::mean_motion(situation.orbits.servicer.a) * situation.orbits.servicer.a;
-  return (1.0 + policy.dear_share) * plan.total_dv() + speed * error.norm();
+  return (1.0 + policy.max_cost_increase) * plan.total_dv() + speed * error.norm();
 }
 
-// `plan` if it arrives.
+// Returns `plan` if it arrives.
 Result<Candidate> arriving(const LegSituation& situation, const Result<Plan>& plan, const LegPolicy& policy) {
   if (!plan.ok()) return plan.status();
   const Result<Vector6> error = evaluate_plan(situation, plan.value());

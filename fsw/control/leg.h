@@ -15,7 +15,7 @@ namespace vbar::fsw::control {
 /// The solver that decide_leg() replans by.
 using LegSolver = ClosedForm;
 
-/// Inputs of a decision.
+/// Holds the inputs of a decision.
 struct LegSituation {
   MeanOrbits orbits;      ///< now
   Plan committed;         ///< commanded, not yet flown, all before `earliest_burn`
@@ -25,29 +25,29 @@ struct LegSituation {
 };
 
 struct LegPolicy {
-  /// A plan is kept while its arrival error, as a length (ROE times the semi-major axis, m), is below this or within 1
-  /// sigma.
+  /// Largest arrival error of a plan that is kept, as a length (ROE times the semi-major axis, m), unless 1 sigma is
+  /// larger.
   double tolerance_m = 1.0;
-  /// Corrected burns may cost this share more than before, plus the cost of the error as a change of inclination,
-  /// the most expensive; beyond, replanning may be cheaper.
-  double dear_share = 0.02;
+  /// Largest share by which corrected burns cost more than before, besides the cost of the error as a change of
+  /// inclination, the most expensive one. Beyond it replanning may be cheaper.
+  double max_cost_increase = 0.02;
   CorrectionSettings correction;
   ClosedFormSettings closed_form;
 };
 
-/// Desired mean ROE at the waypoint minus those at which the committed burns and `plan` arrive, dimensionless. Errors
-/// as fly().
+/// Returns the desired mean ROE at the waypoint minus those at which the committed burns and `plan` arrive,
+/// dimensionless. Errors as fly().
 Result<Vector6> evaluate_plan(const LegSituation& situation, const Plan& plan);
 
-/// 1 sigma, dimensionless, of the arrival error due to the uncertainty of the estimate; errors of the elements are
-/// assumed independent.
+/// Returns 1 sigma, dimensionless, of the arrival error due to the uncertainty of the estimate. Errors of the elements
+/// are assumed independent.
 Vector6 arrival_sigma(const LegSituation& situation);
 
-/// Whether an arrival error is negligible: root sum square of its elements, each in units of the larger of the
-/// tolerance and its 1 sigma, below one.
+/// Returns whether an arrival error is negligible: the root sum square of its elements, each in units of the larger of
+/// the tolerance and its 1 sigma, is below one.
 bool arrives(const LegSituation& situation, const Vector6& error, const LegPolicy& policy);
 
-/// The closed-form solution of the rest of the leg, corrected on the nonlinear prediction. Errors of
+/// Returns the closed-form solution of the rest of the leg, corrected on the nonlinear prediction. Errors of
 /// remaining_problem(), solve_closed_form() and correct_plan().
 Result<Plan> plan_closed_form(const LegSituation& situation, const LegPolicy& policy);
 
@@ -60,16 +60,17 @@ enum class LegAction : unsigned char {
 
 struct LegDecision {
   LegAction action = LegAction::kHandOver;
-  Plan plan;                               ///< of the action; at kHandOver the previous burns without the missed ones
-  Vector6 error = Vector6::Zero();         ///< at the waypoint, with that plan, dimensionless
-  Status closed_form = Status::kNotReady;  ///< of the closed-form solver, if it was invoked
+  Plan plan;                        ///< plan of the action; at kHandOver the previous burns without the missed ones
+  Vector6 error = Vector6::Zero();  ///< at the waypoint, with that plan, dimensionless
+  Status closed_form = Status::kNotReady;  ///< status of the closed-form solver, if it was invoked
 };
 
-/// The first half of a decision, for the plan of any solver: keep it or correct it, else kHandOver. Errors of fly().
+/// Makes the first half of a decision, for the plan of any solver: keeps or corrects it, else kHandOver. Errors of
+/// fly().
 Result<LegDecision> keep_or_correct(const LegSituation& situation, const Plan& plan, const LegPolicy& policy);
 
-/// One decision. Burns of `plan` before `earliest_burn` count as missed. Errors of fly(): then the state of the leg is
-/// unknown.
+/// Makes one decision. Burns of `plan` before `earliest_burn` count as missed. Errors of fly(): then the state of the
+/// leg is unknown.
 Result<LegDecision> decide_leg(const LegSituation& situation, const Plan& plan, const LegPolicy& policy);
 
 }  // namespace vbar::fsw::control

@@ -1,5 +1,5 @@
 #pragma once
-// The near-circular view of relative motion that the closed-form solver is made of: a tangential impulse changes da
+// The near-circular model of relative motion that the closed-form solver uses: a tangential impulse changes da
 // and, by drift, dlambda, and changes de along one phase; a normal impulse changes di along one phase (Chernick and
 // D'Amico 2018). Terms of order e are left to the caller, who evaluates the exact effects.
 
@@ -8,12 +8,12 @@
 
 namespace vbar::fsw::control {
 
-/// Rates of a near-circular orbit under J2 that matter to impulses, from mean elements.
+/// Holds the rates of a near-circular orbit under J2 that determine the effects of impulses, from mean elements.
 struct NearCircularOrbit {
   double a = 0.0;                ///< m
   double n = 0.0;                ///< Keplerian mean motion, rad/s
   double u = 0.0;                ///< mean argument of latitude at the start, rad
-  double latitude_rate = 0.0;    ///< of u, rad/s
+  double latitude_rate = 0.0;    ///< rate of u, rad/s
   double perigee_rate = 0.0;     ///< rotation of the eccentricity vector, rad/s
   double drift_rate = 0.0;       ///< -d(dlambda)/dt per da, rad/s: 1.5 n and the J2 part
   double node_drift_rate = 0.0;  ///< d(diy)/dt per dix, rad/s
@@ -21,8 +21,8 @@ struct NearCircularOrbit {
 
 NearCircularOrbit near_circular_orbit(const orbit::QnsElements& mean);
 
-/// In-plane change wanted at the end of the window, as speeds (m/s): what tangential impulses x_k at times-to-go tau_k
-/// do.
+/// Holds the in-plane change wanted at the end of the window, as speeds (m/s): sums over tangential impulses x_k at
+/// times-to-go tau_k.
 struct TangentialTask {
   double window = 0.0;  ///< s
   double sum = 0.0;     ///< sum of x_k, from da
@@ -31,22 +31,22 @@ struct TangentialTask {
   double e_sin = 0.0;   ///< sum of x_k sin(phase of burn k), from dey
 };
 
-/// `pseudo_state` dimensionless, at the end of a window of `window` s.
+/// Returns the in-plane change for `pseudo_state`, dimensionless, at the end of a window of `window` s.
 TangentialTask tangential_task(const NearCircularOrbit& orbit, const Vector6& pseudo_state, double window);
 
-/// Phase (rad) in the eccentricity plane, as it stands at the end of the window, of a tangential impulse `offset` s
-/// into it.
+/// Returns the phase (rad) in the eccentricity plane, at the end of the window, of a tangential impulse `offset` s into
+/// the window.
 double eccentricity_phase(const NearCircularOrbit& orbit, double window, double offset);
 
-/// Lower bounds of the delta-v (m/s) for each part of a pseudo-state by reachable-set theory: radial impulses excluded,
-/// which are of use only in windows shorter than 0.3 orbits.
+/// Holds lower bounds of the delta-v (m/s) for each part of a pseudo-state by reachable-set theory: radial impulses
+/// excluded, which are of use only in windows shorter than 0.3 orbits.
 struct ReachableBounds {
   double da = 0.0;
   double dlambda = 0.0;
   double de = 0.0;
   double di = 0.0;
 
-  /// All in-plane parts must be achieved, possibly by one set of burns: the largest bound applies.
+  /// Returns the largest in-plane bound: one set of burns may achieve all in-plane parts.
   [[nodiscard]] double in_plane() const;
 };
 

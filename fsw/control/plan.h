@@ -27,22 +27,22 @@ struct ThrustWindows {
   const void* context = nullptr;
 };
 
-/// An impulse of the servicer, m/s in its RTN frame at `time`.
+/// Holds an impulse of the servicer, m/s in its RTN frame at `time`.
 struct Burn {
   GpsTime time;
   Vector3 dv_rtn = Vector3::Zero();
 };
 
-/// Burns in order of time.
+/// Holds burns in order of time.
 struct Plan {
   std::array<Burn, kMaxBurns> burns{};
   std::size_t count = 0;
   Solver solver = Solver::kNone;
 
-  /// The burns; the plan must outlive the span.
+  /// Returns the burns; the plan must outlive the span.
   [[nodiscard]] std::span<const Burn> all() const { return {burns.data(), count}; }
 
-  /// Sum of the burns' norms, m/s.
+  /// Returns the sum of the norms of the burns, m/s.
   [[nodiscard]] double total_dv() const {
     double sum = 0.0;
     for (std::size_t k = 0; k < count; ++k) sum += burns[k].dv_rtn.norm();
@@ -50,7 +50,8 @@ struct Plan {
   }
 };
 
-/// Change the ROE from their free drift to the desired ones, by impulses in [start, arrival].
+/// States the problem of a solver: change the ROE from their free drift to the desired ones, by impulses in [start,
+/// arrival].
 struct ControlProblem {
   GpsTime start;                     ///< earliest burn, epoch of servicer_mean
   GpsTime arrival;                   ///< waypoint time

@@ -20,7 +20,7 @@
 
 namespace vbar::fsw::control {
 
-/// Candidate times, by index, in order of time. The caller owns the storage.
+/// Describes the candidate times, by index, in order of time. The caller owns the storage.
 struct ImpulseGrid {
   std::span<const Matrix63> effects;  ///< change of the final state per impulse at each time (per m/s)
   std::span<const ThrustCost> costs;  ///< one per time
@@ -33,7 +33,7 @@ struct PrimerSettings {
   int max_newton_steps = 60;     ///< for each active set; 12 is typical
 };
 
-/// Caratheodory: six impulses achieve the effect of any number, at the same cost.
+/// Largest number of impulses: six achieve the effect of any number at the same cost (Caratheodory).
 inline constexpr std::size_t kMaxImpulses = 6;
 
 struct Impulse {
@@ -41,7 +41,7 @@ struct Impulse {
   Vector3 dv = Vector3::Zero();
 };
 
-/// Impulses in order of time, and the certificate of their optimality.
+/// Holds the impulses in order of time, and the certificate of their optimality.
 struct PrimerSolution {
   std::array<Impulse, kMaxImpulses> impulses{};
   std::size_t count = 0;
@@ -53,14 +53,14 @@ struct PrimerSolution {
   int newton_steps = 0;              ///< over all rounds
 };
 
-/// Workspace of the solver, about 18 kB.
+/// Holds the workspace of the solver, about 18 kB.
 struct PrimerWorkspace {
   PrimerProgram program;
 };
 
-/// The impulses that achieve `target` at minimum cost. A zero target needs none. Errors: kInvalidArgument (settings,
-/// sizes), kNotFinite (a target or an effect), kSingular (the times allowed do not span the state space: none, too few,
-/// too close), kDidNotConverge.
+/// Returns the impulses that achieve `target` at minimum cost. A zero target needs none. Errors: kInvalidArgument
+/// (settings, sizes), kNotFinite (a target or an effect), kSingular (the times allowed do not span the state space:
+/// none, too few, too close), kDidNotConverge.
 Result<PrimerSolution> solve_primer(const ImpulseGrid& grid, const Vector6& target, const PrimerSettings& settings,
                                     PrimerWorkspace& workspace);
 

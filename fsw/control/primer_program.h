@@ -18,10 +18,10 @@
 
 namespace vbar::fsw::control {
 
-/// Limit of the active set: the coarse times of three thruster pairs, and twelve more.
+/// Largest size of the active set: the coarse times of three thruster pairs, and twelve more.
 inline constexpr std::size_t kMaxActive = 48;
 
-/// An impulse of the program, with the multiplier (bound, -dv) of its cone: |dv| <= bound, equal at the optimum.
+/// Holds an impulse of the program, with the multiplier (bound, -dv) of its cone: |dv| <= bound, equal at the optimum.
 struct ActiveImpulse {
   Matrix63 effect = Matrix63::Zero();  ///< change of the scaled state per impulse; zero columns for axes outside `axes`
   std::size_t time_index = 0;          ///< index in the grid
@@ -30,15 +30,15 @@ struct ActiveImpulse {
   double bound = 0.0;
 };
 
-/// The program, its current point and the Nesterov-Todd scaling, one fixed-size object. State and impulses are scaled
-/// by the caller so that |target| = 1 and the effects are of order one.
+/// Holds the program, its current point and the Nesterov-Todd scaling, in one fixed-size object. State and impulses are
+/// scaled by the caller so that |target| = 1 and the effects are of order one.
 struct PrimerProgram {
   Vector6 target = Vector6::Zero();
   Vector6 lambda = Vector6::Zero();
   std::array<ActiveImpulse, kMaxActive> active{};
   std::size_t count = 0;
 
-  /// Scaling of one cone and the directions of a step in it.
+  /// Holds the scaling of one cone and the directions of a step in it.
   struct Cone {
     double scale_inv_squared = 0.0;  ///< eta^-2
     double scale = 0.0;              ///< eta

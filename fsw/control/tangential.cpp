@@ -10,11 +10,11 @@ namespace {
 using Vector4 = Eigen::Matrix<double, 4, 1>;
 using Matrix4 = Eigen::Matrix<double, 4, 4>;
 
-// Two solutions are equally cheap within this, relative: the earlier times are then chosen, independent of rounding
+// Largest relative difference of equally cheap solutions. The earlier times are then chosen, independent of rounding
 // errors.
 constexpr double kSameCost = 1e-9;
 
-// Magnitudes at three times; kSingular if they share one parity.
+// Returns the magnitudes at three times; kSingular if they share one parity.
 Result<TangentialBurns> three_burns(const TangentialTask& task, const std::array<PhaseTime, 3>& times) {
   // The one of the single parity is c; a and b share the other.
   std::size_t c = 3;
@@ -40,7 +40,7 @@ Result<TangentialBurns> three_burns(const TangentialTask& task, const std::array
   return burns;
 }
 
-// Effect of a unit tangential impulse on [sum, moment / window, e_cos, e_sin].
+// Returns the effect of a unit tangential impulse on [sum, moment / window, e_cos, e_sin].
 Vector4 column(const NearCircularOrbit& orbit, double window, double offset) {
   const double phase = eccentricity_phase(orbit, window, offset);
   return {1.0, 1.0 - offset / window, math::cos(phase), math::sin(phase)};

@@ -10,10 +10,11 @@
 
 namespace vbar::fsw::control {
 
-/// Times available to a closed-form plan: two per orbit on the phase grid, for windows of up to 15 orbits.
+/// Largest number of times of a closed-form plan: two per orbit on the phase grid, for windows of up to 15 orbits.
 inline constexpr std::size_t kMaxPhaseTimes = 32;
 
-/// A time at which a tangential impulse changes the eccentricity vector along the desired direction (+1) or against
+/// Holds a time at which a tangential impulse changes the eccentricity vector along the desired direction (+1) or
+/// against
 /// (-1).
 struct PhaseTime {
   double offset = 0.0;  ///< s into the window
@@ -27,11 +28,11 @@ struct PhaseTimes {
   [[nodiscard]] std::span<const PhaseTime> all() const { return {times.data(), count}; }
 };
 
-/// All times within [0, window] at which `rate` * offset passes `phase` + m pi, the first kMaxPhaseTimes of them. rate
-/// > 0.
+/// Returns all times within [0, window] at which `rate` * offset passes `phase` + m pi, the first kMaxPhaseTimes of
+/// them. rate > 0.
 PhaseTimes phase_times(double phase, double rate, double window);
 
-/// Tangential impulses of the deputy.
+/// Holds tangential impulses of the deputy.
 struct TangentialBurns {
   static constexpr std::size_t kMax = 4;
   struct Impulse {
@@ -41,18 +42,18 @@ struct TangentialBurns {
   std::array<Impulse, kMax> impulses{};
   std::size_t count = 0;
 
-  /// Sum of magnitudes, m/s.
+  /// Returns the sum of magnitudes, m/s.
   [[nodiscard]] double cost() const;
 };
 
-/// The cheapest three impulses at times of the grid that achieve da, dlambda and |de|, the phase of de being that of
-/// the grid: the exact optimum over the grid, since a basic solution of three equations has at most three non-zeros
-/// (Chernick and D'Amico 2018). Of equally cheap ones the earliest. kSingular if the grid has fewer than three times or
-/// only one parity.
+/// Returns the cheapest three impulses at times of the grid that achieve da, dlambda and |de|, the phase of de being
+/// that of the grid: the exact optimum over the grid, since a basic solution of three equations has at most three
+/// non-zeros (Chernick and D'Amico 2018). Among equally cheap ones the earliest is chosen. kSingular if the grid has
+/// fewer than three times or only one parity.
 Result<TangentialBurns> cheapest_three_burns(const TangentialTask& task, std::span<const PhaseTime> grid);
 
-/// The cheapest impulses (at most four) among `offsets` (s into the window) that achieve da, dlambda, dex and dey,
-/// of any phase: the linear program min sum |x| by the revised simplex method. kSingular if the offsets cannot
+/// Returns the cheapest impulses (at most four) among `offsets` (s into the window) that achieve da, dlambda, dex and
+/// dey, of any phase: the linear program min sum |x| by the revised simplex method. kSingular if the offsets cannot
 /// meet the task.
 Result<TangentialBurns> cheapest_four_burns(const NearCircularOrbit& orbit, const TangentialTask& task,
                                             std::span<const double> offsets);

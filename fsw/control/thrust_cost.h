@@ -20,7 +20,7 @@ enum class ThrustCost : std::uint8_t {
   kRadialAndPlane,   ///< |dv_R| + hypot(dv_T, dv_N): a pair along R, one steerable thruster in the plane of T and N
 };
 
-/// A set of RTN axes: bit 0 is R, bit 1 T, bit 2 N.
+/// Set of RTN axes: bit 0 is R, bit 1 T, bit 2 N.
 using AxisSet = std::uint8_t;
 
 struct AxisGroups {
@@ -28,7 +28,7 @@ struct AxisGroups {
   std::size_t count = 0;
 };
 
-/// The groups whose norms are summed.
+/// Returns the groups whose norms are summed.
 constexpr AxisGroups axis_groups(ThrustCost cost) {
   switch (cost) {
     case ThrustCost::kSteerable:
@@ -41,12 +41,12 @@ constexpr AxisGroups axis_groups(ThrustCost cost) {
   return {};
 }
 
-/// The part of `v` along the axes of `axes`, zero elsewhere.
+/// Returns the part of `v` along the axes of `axes`, zero elsewhere.
 inline Vector3 masked(const Vector3& v, AxisSet axes) {
   return {(axes & 1U) != 0 ? v.x() : 0.0, (axes & 2U) != 0 ? v.y() : 0.0, (axes & 4U) != 0 ? v.z() : 0.0};
 }
 
-/// Contact function of a primer vector: its square, and the group that attains it.
+/// Holds the contact function of a primer vector: its square, and the group that attains it.
 struct Contact {
   double squared = 0.0;
   AxisSet axes = 0;
@@ -63,7 +63,7 @@ inline Contact contact(ThrustCost cost, const Vector3& primer) {
   return largest;
 }
 
-/// Cost of an impulse.
+/// Returns the cost of an impulse.
 inline double impulse_cost(ThrustCost cost, const Vector3& dv) {
   const AxisGroups groups = axis_groups(cost);
   double sum = 0.0;

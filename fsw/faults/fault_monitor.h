@@ -1,6 +1,6 @@
 #pragma once
-// Detected faults: each persists, is raised with an event, latches with the time of its onset, and is cleared by
-// telecommand. What a fault leads to is in fault_table.h.
+// Fault monitor: a detection that persists raises its fault with an event. The fault latches with the time of its onset
+// and is cleared by telecommand. fault_table.h states the response to each fault.
 
 #include <array>
 #include <cstddef>
@@ -12,15 +12,15 @@
 
 namespace vbar::fsw::faults {
 
-/// A detection that was checked.
+/// Holds the result of one check of a fault.
 struct Check {
   std::int32_t fault = 0;  ///< telemetry_health.kFault
   bool is_detected = false;
-  std::int32_t device = 0;  ///< source of navigation concerned, a bit of navigation_configuration.sources; 0 none
+  std::int32_t device = 0;  ///< measurement source concerned, a bit of navigation_configuration.sources; 0 none
   double argument = 0.0;    ///< as fault_table.h states
 };
 
-/// A change of a fault: an event is due.
+/// Describes a change of a fault, for which an event is due.
 struct Transition {
   std::int32_t fault = 0;
   std::int8_t event = 0;  ///< telemetry_event.kEventFault...
@@ -34,26 +34,26 @@ class FaultMonitor {
  public:
   FaultMonitor();
 
-  /// Records a check at `time`. One whose fault has occurred once and for all is checked once, with is_detected.
+  /// Records a check at `time`. A fault that is an occurrence, not a condition, is checked once, with is_detected.
   void check(GpsTime time, const Check& check);
 
-  /// Telecommand: those of `faults` are not latched any more; their persistence is reset.
+  /// Clears the latched ones of `faults`, by telecommand, and resets their persistence.
   void clear(GpsTime time, std::int32_t faults);
 
   [[nodiscard]] std::int32_t latched() const { return latched_; }
-  /// Of the latched ones, those that persist.
+  /// Returns the latched faults that persist.
   [[nodiscard]] std::int32_t present() const { return present_; }
-  /// Time of the onset of a latched fault.
+  /// Returns the time of the onset of a latched fault.
   [[nodiscard]] GpsTime onset(std::int32_t fault) const { return states_[place_of(fault)].onset; }
-  /// Whether a fault that is present calls for the response.
+  /// Returns whether a fault that is present demands the response.
   [[nodiscard]] bool demands(Response response) const;
 
-  /// Since forget_transitions(), in order.
+  /// Returns the transitions since forget_transitions(), in order.
   [[nodiscard]] std::span<const Transition> transitions() const {
     return std::span(transitions_).first(transition_count_);
   }
   void forget_transitions() { transition_count_ = 0; }
-  /// Transitions for which there was no place.
+  /// Returns the number of transitions for which there was no place.
   [[nodiscard]] std::int32_t lost_transitions() const { return lost_; }
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-// The table of all faults: how long a detection must persist, and the response. The names are those of vbar.lcm,
-// telemetry_health.kFault..., whose bits are the numbers here.
+// The table of all faults: how long a detection must persist, and the response. The names and bits are those of
+// vbar.lcm, telemetry_health.kFault...
 
 #include <array>
 #include <bit>
@@ -12,10 +12,10 @@
 
 namespace vbar::fsw::faults {
 
-/// What the flight software does while a fault is present, besides reporting it.
+/// Response of the flight software while a fault is present, besides the report.
 enum class Response : std::uint8_t {
-  kReport,   ///< nothing: the ground must act, or the event is over
-  kIsolate,  ///< what failed is not used: its data are refused or replaced, or the source is suspended; if no other
+  kReport,   ///< none: the ground must act, or the event is over
+  kIsolate,  ///< what failed is not used: its data are rejected or replaced, or the source is suspended; if no other
              ///< source confirms the orbit, its covariance is inflated instead (fsw/gnc/trunk_navigation.h)
   kHold,     ///< no burn is planned or commanded but the retreat
   kRetreat,  ///< mode retreat
@@ -24,7 +24,7 @@ enum class Response : std::uint8_t {
 struct Rule {
   std::int32_t fault = 0;    ///< bit of telemetry_health.faults
   std::int8_t severity = 0;  ///< telemetry_event.kSeverity
-  int limit = 1;             ///< of the last `window` checks, these must detect it
+  int limit = 1;             ///< number of the last `window` checks that must detect it
   int window = 1;
   Response response = Response::kReport;
 };
@@ -43,7 +43,7 @@ inline constexpr auto kFaultTable = std::to_array<Rule>({
     {telemetry_health::kFaultAttitude, telemetry_event::kSeverityFault, 2, 3, Response::kIsolate},     // rad
     {telemetry_health::kFaultReceiverSilent, telemetry_event::kSeverityFault},                         // silence, s
     {telemetry_health::kFaultCrosslinkSilent, telemetry_event::kSeverityWarning},                      // silence, s
-    // mean NIS/dof; of estimates that a source itself has found wrong: that, or sigmas
+    // mean NIS per degree of freedom, or sigmas of an estimate that the source itself has found inconsistent
     {telemetry_health::kFaultSourceInconsistent, telemetry_event::kSeverityWarning, 1, 1, Response::kIsolate},
     // restarts; the source is isolated as well
     {telemetry_health::kFaultSourceRestarts, telemetry_event::kSeverityFault, 1, 1, Response::kHold},
@@ -90,7 +90,7 @@ constexpr bool is_complete() {
 }  // namespace detail
 static_assert(detail::is_complete(), "one rule for each fault of vbar.lcm, whose bits have no gap");
 
-/// Place in the table of a fault given by its bit.
+/// Returns the place in the table of a fault given by its bit.
 constexpr std::size_t place_of(std::int32_t fault) {
   for (std::size_t k = 0; k < kFaultCount; ++k) {
     if (kFaultTable[k].fault == fault) return k;

@@ -9,7 +9,8 @@
 namespace vbar::fsw::gnc {
 namespace {
 
-/// Of the guard's timeout: an eclipse as long as that, and the time in sunlight that the guard accepts beside it.
+/// Longest outage as a multiple of the timeout of the safety monitor: an eclipse as long as the timeout, and the time
+/// in sunlight that the monitor accepts beside it.
 constexpr double kLongestOutage = 1.0 + guard::Guard::kLitShare;
 
 }  // namespace

@@ -8,11 +8,11 @@ namespace {
 using navigation::AttitudeHistory;
 using navigation::AttitudeSample;
 
-// A platform that was this close to its command when it was last measured is assumed to be there; otherwise the gyro is
-// more accurate.
+// A platform that was this close to its command at the last measurement is assumed to have the commanded attitude.
+// Otherwise the gyro is more accurate.
 constexpr double kCloseControl = 2e-3;  // rad
 
-/// Angle of the rotation between two attitudes, rad; accurate for small ones.
+/// Returns the angle of the rotation between two attitudes, rad; accurate for small angles.
 double angle_between(const Matrix3& R_eci_a, const Matrix3& R_eci_b) {
   const double squared = (R_eci_a - R_eci_b).squaredNorm();  // 8 sin^2(angle / 2)
   const double sine = math::sqrt(squared / 8.0);
@@ -21,7 +21,8 @@ double angle_between(const Matrix3& R_eci_a, const Matrix3& R_eci_b) {
 
 }  // namespace
 
-/// By the mean of the rates at both ends; empty if the interval is too long for that, or the propagation too old.
+/// Propagates by the mean of the rates at both ends. Returns nothing if the interval is too long for the mean, or the
+/// propagation too old.
 std::optional<Matrix3> AttitudeGate::propagated_to(const AttitudeSample& sample) const {
   if (!gyro_) return std::nullopt;
   const Duration apart = sample.time < gyro_->time ? gyro_->time - sample.time : sample.time - gyro_->time;
@@ -70,7 +71,7 @@ void AttitudeGate::take_stars(GpsTime time, const Matrix3& R_eci_body) {
   const bool contradicts = propagated && angle_between(R_eci_body, *propagated) > kLargestDifference;
   if (!contradicts && !is_refusing_) return;
   if (gyro_ && time < gyro_->time) {
-    // To the last sample, from which the propagation continues.
+    // The propagation continues from the last sample.
     gyro_->R_eci_body = navigation::rotated(R_eci_body, seconds(gyro_->time - time) * gyro_->rate_body);
   } else {
     gyro_ = stars;

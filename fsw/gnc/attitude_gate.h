@@ -1,9 +1,9 @@
 #pragma once
-// Attitudes of the servicer that a star tracker in error would give: they contradict both the attitude that its gyro
-// propagates and the one that is commanded. In place of a refused attitude the propagated or the commanded one is used.
+// Gate for attitudes of the servicer, which rejects those of a star tracker in error: they contradict both the attitude
+// that the gyro propagates and the commanded one. The propagated or the commanded attitude replaces a rejected one.
 //
-// The gyro continues through refusals: a step of the tracker contradicts it for as long as its drift stays small
-// against the step. Stars in an image of the camera restart it.
+// The propagation by the gyro continues through rejections. A step of the tracker contradicts it for as long as the
+// drift of the gyro stays small against the step. Stars in an image of the camera restart the propagation.
 
 #include <optional>
 
@@ -14,38 +14,40 @@ namespace vbar::fsw::gnc {
 
 class AttitudeGate {
  public:
-  /// Many times what a platform's control error and the drift of a gyro over kLongestPropagation amount to.
+  /// Largest accepted difference: many times the control error of a platform and the drift of a gyro over
+  /// kLongestPropagation.
   static constexpr double kLargestDifference = 0.01;  // rad
-  /// The drift of a gyro of 0.3 deg/h is a quarter of kLargestDifference after this time.
+  /// Longest propagation by the gyro: at 0.3 deg/h the drift is then a quarter of kLargestDifference.
   static constexpr Duration kLongestPropagation = duration_of_seconds(1800);
 
-  /// `used`: the sample itself if it is accepted; otherwise its time and rate with the attitude that replaces it, empty
-  /// if there is none.
+  /// Verdict on a sample. `used` is the sample itself if it is accepted. Otherwise `used` has its time and rate with
+  /// the attitude that replaces it, or is empty without such an attitude.
   struct Verdict {
     bool is_accepted = false;
     std::optional<navigation::AttitudeSample> used;
   };
 
-  /// `R_body_eci_commanded`: at the time of the sample, empty without a command. What no other attitude can judge is
-  /// accepted.
+  /// Judges a sample. `R_body_eci_commanded` holds at the time of the sample and is empty without a command. A sample
+  /// that no other attitude can judge is accepted.
   [[nodiscard]] Verdict judge(const navigation::AttitudeSample& sample,
                               const std::optional<Matrix3>& R_body_eci_commanded);
 
-  /// The attitude by the stars of an image. If the propagated one contradicts it, or if the tracker is being refused,
-  /// the propagation restarts from it.
+  /// Accepts the attitude by the stars of an image. The propagation restarts from it if the propagated attitude
+  /// contradicts it, or while the tracker is rejected.
   void take_stars(GpsTime time, const Matrix3& R_eci_body);
 
-  /// The smaller of both differences of the last sample, rad.
+  /// Returns the smaller of both differences of the last sample, rad.
   [[nodiscard]] double difference() const { return difference_; }
 
  private:
   [[nodiscard]] std::optional<Matrix3> propagated_to(const navigation::AttitudeSample& sample) const;
 
   std::optional<navigation::AttitudeSample> gyro_;  ///< propagated to the last sample
-  GpsTime anchored_;                                ///< the last attitude that was not propagated
-  bool follows_commands_ = false;                   ///< the platform has been where it was commanded
-  double control_error_ = 0.0;  ///< rad, of the last accepted sample against its command, if it follows commands
-  bool is_refusing_ = false;    ///< the last sample
+  GpsTime anchored_;                                ///< time of the last attitude that was not propagated
+  bool follows_commands_ = false;                   ///< the platform has reached a commanded attitude
+  double control_error_ =
+      0.0;                    ///< rad, difference of the last accepted sample from its command, if it follows commands
+  bool is_refusing_ = false;  ///< the last sample was rejected
   double difference_ = 0.0;
 };
 

@@ -6,21 +6,22 @@
 namespace vbar::fsw::gnc {
 namespace {
 
-// A burn differs from the command if it does so by more than this share of its size, five sigma of a thruster, and five
-// sigma of the impulse that it errs by, which dominates burns of micrometres per second: both errors are independent.
-// One burn is therefore enough.
+// A burn differs from its command if the difference exceeds this share of its size (five sigma of a thruster) and five
+// sigma of the constant error of an impulse, which dominates burns of micrometres per second. Both errors are
+// independent, so that one burn decides.
 constexpr double kUsualShare = 0.05;
 constexpr double kImpulseSigma = 2e-6;  // m/s
 constexpr double kUsualImpulse = 5.0 * kImpulseSigma;
-// So does a scale that is off by the same share and by this multiple of its sigma, where single burns are too small.
+// Where single burns are too small, the scale decides: it differs if it errs by the same share and by this multiple of
+// its sigma.
 constexpr double kScaleSigmas = 4.0;
-constexpr double kJumpSigmas = 5.0;    // of a ratio from the estimate, from which on the scale is another one
+constexpr double kJumpSigmas = 5.0;    // difference of a ratio from the estimate beyond which the scale has jumped
 constexpr double kNothing = 0.1;       // share of the size below which a burn counts as missed
-constexpr double kImplausible = 10.0;  // share of the size from which on a report says nothing of the thruster
+constexpr double kImplausible = 10.0;  // share of the size beyond which a report does not measure the thruster
 constexpr Duration kOnTime = duration_of_seconds(1);
 constexpr Duration kLatestReport = duration_of_seconds(300);
 
-// Of the estimate of the scale: a report by itself, and the drift from burn to burn.
+// Errors in the estimate of the scale: 1 sigma of one report, and of the drift from burn to burn.
 constexpr double kRatioSigma = 0.01;
 constexpr double kScaleDrift = 0.002;
 
@@ -28,12 +29,12 @@ double square(double x) {
   return x * x;
 }
 
-/// Of the ratio of a burn of `dv` m/s.
+/// Returns the variance of the ratio of a burn of `dv` m/s.
 double ratio_variance(double dv) {
   return square(kRatioSigma) + square(kImpulseSigma / dv);
 }
 
-/// Whether a burn of this size shows a scale that is off by twice the usual share.
+/// Returns whether a burn of this size shows a scale that errs by twice the default share.
 bool shows_scale(double dv) {
   return square(kScaleSigmas) * ratio_variance(dv) < square(2.0 * kUsualShare);
 }
@@ -117,7 +118,7 @@ void BurnMonitor::judge(const Commanded& commanded, GpsTime time, const executed
   if (is_of_other_size || shows_scale(size)) {
     faults.check(now, {.fault = telemetry_health::kFaultBurnSize, .is_detected = is_of_other_size, .argument = ratio});
   }
-  // A refusal is the command's lateness, not the thruster's failure.
+  // A rejection shows that the command was late, not that the thruster failed.
   if (!is_refused) {
     faults.check(now, {.fault = telemetry_health::kFaultThruster, .is_detected = is_missed, .argument = ratio});
   }

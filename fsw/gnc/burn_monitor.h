@@ -1,6 +1,6 @@
 #pragma once
-// Burns as commanded against burns as executed: refused, late, missing, of another size, or never commanded; and the
-// ratio of executed to commanded size, by which commands are corrected.
+// Comparison of commanded with executed burns: rejected, late, missing, of another size, or never commanded. The ratio
+// of executed to commanded size is estimated, and commands are corrected by it.
 
 #include <array>
 #include <cstddef>
@@ -13,18 +13,19 @@
 
 namespace vbar::fsw::gnc {
 
-/// Ratio of executed to commanded size: one state, updated by each report. It is constant but for a slow drift, and for
-/// jumps, after which it is learnt again.
+/// Estimates the ratio of executed to commanded size: one state, updated by each report. The ratio drifts slowly; after
+/// a jump its estimate is re-initialised.
 class BurnScale {
  public:
-  /// `ratio` of a burn of `dv` m/s.
+  /// Updates the estimate by the `ratio` of a burn of `dv` m/s.
   void update(double ratio, double dv);
-  /// Within kMinScale and kMaxScale: a thruster off by more is not corrected but failed.
+  /// Returns the ratio, limited to kMinScale and kMaxScale: a thruster that errs by more has failed and is not
+  /// corrected.
   [[nodiscard]] double scale() const {
     return scale_ < kMinScale ? kMinScale : (scale_ > kMaxScale ? kMaxScale : scale_);
   }
   [[nodiscard]] double sigma() const { return sigma_; }
-  /// Whether it differs from one by more than `share` and by more than this multiple of its sigma.
+  /// Returns whether the ratio differs from one by more than `share` and by more than this multiple of its sigma.
   [[nodiscard]] bool differs(double share, double sigmas) const;
 
   static constexpr double kMinScale = 0.5;
@@ -39,14 +40,14 @@ class BurnScale {
 
 class BurnMonitor {
  public:
-  /// A burn was commanded.
+  /// Notes a commanded burn.
   void expect(std::int32_t maneuver_id, GpsTime time, const Vector3& dv_rtn);
 
-  /// Checks the reports of the step, and burns of which none has come.
+  /// Checks the reports of the step, and the burns that remain without a report.
   void update(GpsTime now, const Inbox& inbox, faults::FaultMonitor& faults);
 
   [[nodiscard]] const BurnScale& scale() const { return scale_; }
-  /// Burns reported so far, other than refused or missing ones.
+  /// Returns the number of burns reported as executed so far.
   [[nodiscard]] std::int32_t executed() const { return executed_; }
 
  private:
@@ -60,7 +61,7 @@ class BurnMonitor {
              faults::FaultMonitor& faults);
   void forget(std::size_t k);
 
-  static constexpr std::size_t kMaxCommanded = 32;  // of a step at most 16, each reported within minutes
+  static constexpr std::size_t kMaxCommanded = 32;  // at most 16 in a step, each reported within minutes
 
   std::array<Commanded, kMaxCommanded> commanded_{};
   std::size_t count_ = 0;

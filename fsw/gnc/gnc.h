@@ -1,6 +1,6 @@
 #pragma once
-// The flight software: packets in, a step, packets out. Its complete state is this one object, of which a
-// snapshot contains the part that outlives a step.
+// The flight software: packets in, a step, packets out. One object is its complete state; a snapshot contains the part
+// that outlives a step.
 
 #include <cstddef>
 #include <cstdint>
@@ -26,7 +26,7 @@
 
 namespace vbar::fsw::gnc {
 
-/// The state that one step leaves for the next one: the content of a snapshot, but for counters of inbox and outbox.
+/// Holds the state that one step leaves for the next one. A snapshot contains it, and the counters of inbox and outbox.
 struct GncState {
   Telecommands telecommands_;
   Management management_;
@@ -38,17 +38,17 @@ struct GncState {
   BurnMonitor burns_;
   guard::Guard guard_;
   ImageWatch images_;
-  std::optional<vbar::attitude> attitude_;  ///< the last one received, for the guard
-  std::optional<GpsTime> unsafe_since_;     ///< no plan leaves an unsafe drift
+  std::optional<vbar::attitude> attitude_;  ///< the last one received, for the safety monitor
+  std::optional<GpsTime> unsafe_since_;     ///< time since which no plan leaves an unsafe drift
   GpsTime now_;
-  GpsTime started_;  ///< first step
+  GpsTime started_;  ///< time of the first step
   std::int64_t step_ = 0;
   faults::FaultMonitor faults_;
-  std::int32_t packets_dropped_ = 0;  ///< of the inbox, until the last step
-  int failures_ = 0;                  ///< of the trunk, until the last step
-  Duration promised_period_;          ///< from the last step to this one, as its tick stated; 0 unknown
+  std::int32_t packets_dropped_ = 0;  ///< packets dropped by the inbox until the last step
+  int failures_ = 0;                  ///< failures of the relative navigation filter until the last step
+  Duration promised_period_;          ///< time from the last step to this one, as its tick stated; 0 unknown
   bool stepped_ = false;
-  bool has_navigated_ = false;  ///< since the first step
+  bool has_navigated_ = false;  ///< navigation was valid since the first step
 };
 
 class Gnc : private GncState {
@@ -57,15 +57,15 @@ class Gnc : private GncState {
 
   void set_sink(vbar_packet_sink sink, void* sink_context) { outbox_.set_sink(sink, sink_context); }
 
-  /// Checks and files one packet for the coming step.
+  /// Checks one packet and keeps it for the coming step.
   Status receive(std::span<const std::uint8_t> packet) { return inbox_.receive(packet); }
 
-  /// Runs the step at `now`. Discards the packets of the step and sends its health only, if the clock refuses `now`
-  /// (step_clock.h): not later than the last step (kBadSequence), or far ahead or outside the range of times
-  /// (kOutOfRange). The time of the next step is accepted if a telecommand clears the fault of the clock.
+  /// Runs the step at `now`. If the step clock rejects `now` (step_clock.h), the packets of the step are discarded and
+  /// only its health is sent: kBadSequence if `now` is not later than the last step, kOutOfRange if it is far ahead or
+  /// outside the range of times. After a telecommand that clears the fault of the clock, the next time is accepted.
   Status step(GpsTime now);
 
-  /// vbar_gnc_save and vbar_gnc_restore of the interface in C.
+  /// Implements vbar_gnc_save and vbar_gnc_restore of the interface in C.
   Status save(std::span<std::uint8_t> snapshot) const;
   Status restore(std::span<const std::uint8_t> snapshot);
   static const std::size_t kSnapshotBytes;
@@ -79,7 +79,7 @@ class Gnc : private GncState {
   void manage();
   void navigate();
   void assess();
-  /// Runs the guard, which judges the approach beside navigation.
+  /// Runs the safety monitor, which judges the approach beside navigation.
   void supervise();
   /// Derives the responses to faults: the retreat.
   void respond();
@@ -120,11 +120,11 @@ class Gnc : private GncState {
   void restart(GpsTime now);
   void resume(GpsTime now);
 
-  alignas(GncState) Inbox inbox_;  // aligned, and so behind the padding of the state, which a snapshot contains
+  alignas(GncState) Inbox inbox_;  // aligned, to lie behind the padding of the state, which a snapshot contains
   Outbox outbox_;
   StepClock clock_;
-  Status restored_ = Status::kOk;  ///< of a snapshot, until the step after it
-  bool is_restored_ = false;       ///< from a snapshot since the last step
+  Status restored_ = Status::kOk;  ///< status of the restored snapshot, until the step after it
+  bool is_restored_ = false;       ///< a snapshot was restored since the last step
 };
 
 }  // namespace vbar::fsw::gnc

@@ -12,7 +12,7 @@ constexpr bool is_reported_as(Enumerator enumerator, int constant) {
   return static_cast<int>(enumerator) == constant;
 }
 
-// The last of each list stands for all: the lists of vbar.lcm are those of the code.
+// The last value stands for all of its list: the lists of vbar.lcm are those of the code.
 static_assert(is_reported_as(Status::kNotReady, telemetry_control::kStatusNotReady));
 static_assert(is_reported_as(NavigationSource::kPose, telemetry_navigation::kSourcePose));
 

@@ -9,7 +9,7 @@
 namespace vbar::fsw::gnc {
 namespace {
 
-/// Exposures of a resolved target differ from the commanded one by rounding only.
+/// Largest share by which the exposure of a resolved target differs from the commanded one: rounding.
 constexpr double kSameExposure = 0.1;
 
 bool is_for_resolved_target(const imaging::ImageAssembly& image, const pose_configuration& keypoints) {

@@ -31,7 +31,8 @@ bool is_safe(const Result<safety::PlanSafety>& verdict) {
   return verdict.ok() && verdict.value().safe;
 }
 
-/// Uncertainty of the estimate: three sigma of position, and of the along-track drift due to the uncertainty of da.
+/// Returns the uncertainty of the estimate: three sigma of position, and of the along-track drift due to the
+/// uncertainty of da.
 safety::PositionBound three_sigma(const Vector6& sigma_rtn, double sigma_a_da_m,
                                   const orbit::QnsElements& servicer_mean) {
   safety::PositionBound bound;
@@ -54,7 +55,8 @@ void remove_first(Plan& plan) {
   --plan.count;
 }
 
-/// First the burns already commanded, then those only planned; both in order of time, the former all earlier.
+/// Returns the commanded burns, followed by those that are only planned. Both are in order of time; all commanded burns
+/// are earlier.
 Plan joined(const Plan& pending, const Plan& planned) {
   Plan all = pending;
   for (std::size_t k = 0; k < planned.count && all.count < control::kMaxBurns; ++k) {
@@ -135,7 +137,8 @@ void Guidance::drop_plan() {
   report_.active_solver = Solver::kNone;
 }
 
-/// The burn needs neither a plan nor a present estimate: it is known from the last step that had one.
+/// Commands the burn of the retreat. It needs neither a plan nor a present estimate: the last step with an estimate has
+/// prepared it.
 void Guidance::command_retreat(GpsTime now, const gnc_configuration& configuration, RetreatSequence& retreat) {
   drop_plan();
   earliest_burn_ = now + Duration{configuration.compute_latency_ns};
@@ -148,7 +151,7 @@ void Guidance::command_retreat(GpsTime now, const gnc_configuration& configurati
   commanded_dv_ += burn.dv_rtn.norm();
 }
 
-/// Selects the waypoint ahead. Sets `goal_`; a new one discards the plan of the previous one.
+/// Selects the waypoint ahead and sets `goal_`. A new goal discards the plan of the previous one.
 bool Guidance::select_goal(GpsTime now, const Management& management, const RetreatSequence& retreat) {
   switch (management.mode()) {
     case Mode::kIdle:
@@ -166,7 +169,7 @@ bool Guidance::select_goal(GpsTime now, const Management& management, const Retr
   return false;
 }
 
-/// An orbit that is kept is a goal while a correction is under way, and when the error exceeds the deadband.
+/// Selects the orbit to be kept while a correction is under way, and when the error exceeds the deadband.
 bool Guidance::select_kept_orbit(GpsTime now, const Management& management, const Waypoint* kept) {
   if (kept == nullptr) return false;
   if (has_goal_ && goal_.index == kept->index && goal_.roe == kept->roe && goal_.time > now) {
@@ -264,7 +267,7 @@ bool Guidance::solver_fallback(const gnc_configuration& configuration, bool esti
   });
 }
 
-/// Solvers are linear; the residual error of the nonlinear model is removed by correcting their burns, where possible.
+/// Corrects the burns of a solver for the nonlinear model, if that reduces the error: solvers are linear.
 Plan Guidance::refined(const Plan& candidate) const {
   const control::LegSituation situation = leg_situation();
   const Result<Plan> corrected =
@@ -325,14 +328,14 @@ Result<safety::PlanSafety> Guidance::safety_of(const Plan& candidate, const gnc_
   return safety::assess_plan(orbits_.epoch, orbits_.servicer, report_.roe, all, criterion);
 }
 
-/// New burns are placed after the latency and after everything commanded.
+/// Returns the earliest time of a new burn: after the latency and after all commanded burns.
 GpsTime Guidance::earliest_start() const {
   if (pending_.count == 0) return earliest_burn_;
   const GpsTime after_pending = pending_.burns[pending_.count - 1].time + Duration{1};
   return after_pending > earliest_burn_ ? after_pending : earliest_burn_;
 }
 
-/// Commanded burns whose time has passed are discarded; they are contained in the state.
+/// Discards commanded burns whose time has passed: the state contains them.
 void Guidance::discard_past_burns(GpsTime now) {
   drop_burns_before(pending_, now);
   drop_burns_before(plan_, now);  // a planned burn can only be past if steps were missed: it was never commanded

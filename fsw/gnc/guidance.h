@@ -1,9 +1,9 @@
 #pragma once
 // control: selection of waypoint, solver and fallback; commanding of burns.
 //
-// A plan is kept while it still arrives; otherwise the solvers of the leg are tried in order of preference, and a plan
-// is flown only if it passes the passive-safety test after every partial burn sequence. If none does, no burn is
-// flown: hold. A burn is commanded in the last step in which it is still possible, so that replanning may improve it.
+// A plan is kept while it arrives. Otherwise the solvers are tried in the order of their list. A plan is accepted only
+// if it passes the passive-safety test after every partial burn sequence. Without an accepted plan guidance holds: no
+// burn is flown. A burn is commanded in the last step in which it is still possible, so that replanning may improve it.
 
 #include <array>
 #include <cstdint>
@@ -21,10 +21,10 @@
 
 namespace vbar::fsw::gnc {
 
-/// Decisions of guidance in a step, for telemetry. Statuses are those of the last attempt.
+/// Holds the decisions of guidance in a step, for telemetry. Statuses are those of the last attempt.
 struct GuidanceReport {
   control::Solver active_solver = control::Solver::kNone;
-  std::array<Status, control::kSolvers> status = [] {  ///< in the order of the solver list
+  std::array<Status, control::kSolvers> status = [] {  ///< of each solver, in the order of the list
     std::array<Status, control::kSolvers> all{};
     all.fill(Status::kNotReady);
     return all;
@@ -40,14 +40,14 @@ struct GuidanceReport {
   std::int32_t holds = 0;
 };
 
-/// Where the burns already commanded lead.
+/// Describes the drift after the burns already commanded.
 struct DriftSituation {
   control::MeanOrbits orbits;               ///< at the earliest time of another burn
   safety::PositionBound bound;              ///< 3 sigma
   Matrix6 covariance_m2 = Matrix6::Zero();  ///< of the mean ROE times a
 };
 
-/// A burn to be commanded now.
+/// Holds a burn to be commanded in this step.
 struct CommandedBurn {
   std::int32_t maneuver_id = 0;
   std::int32_t waypoint_index = -1;
@@ -59,21 +59,21 @@ class Guidance {
  public:
   static constexpr std::size_t kMaxCommandsPerStep = 16;
 
-  /// Mean orbits of both spacecraft and the passive safety of the current plan.
+  /// Derives the mean orbits of both spacecraft and the passive safety of the current plan.
   void assess(GpsTime now, const NavigationSolution& navigation, const filter::RelativeNavigationFilter& filter,
               const Management& management);
 
-  /// Nothing without a situation that is known.
+  /// Returns the drift after the commanded burns; nothing if the situation is unknown.
   [[nodiscard]] std::optional<DriftSituation> drift_situation() const;
 
-  /// One step: discards past burns, replans if due and necessary, and collects the burns to command. `period` is the
-  /// time to the next step. `may_plan`: false if a fault forbids burns other than the retreat's.
+  /// Discards past burns, replans if due and necessary, and collects the burns to command. `period` is the time to the
+  /// next step. `may_plan` is false if a fault forbids all burns but the retreat's.
   void update(GpsTime now, Duration period, const NavigationSolution& navigation, const Management& management,
               RetreatSequence& retreat, bool may_plan);
 
-  /// No plan could be flown at the last decision.
+  /// Returns whether no plan could be flown at the last decision.
   [[nodiscard]] bool is_holding() const { return is_holding_; }
-  /// Distance that drifts on the present leg keep, m.
+  /// Returns the distance that drifts on the present leg must keep, m.
   [[nodiscard]] double keep_out(const gnc_configuration& configuration) const;
   [[nodiscard]] bool situation_known() const { return situation_known_; }
   [[nodiscard]] const GuidanceReport& report() const { return report_; }
@@ -117,7 +117,7 @@ class Guidance {
   std::optional<LitWindows> lit_;            ///< burns are restricted to sunlight
   Vector6 sigma_roe_ = Vector6::Zero();      ///< 1 sigma, dimensionless
   safety::PositionBound position_bound_;     ///< 3 sigma
-  Matrix6 covariance_m2_ = Matrix6::Zero();  ///< of the mean ROE times a
+  Matrix6 covariance_m2_ = Matrix6::Zero();  ///< covariance of the mean ROE times a
   safety::BurnUncertainty burn_uncertainty_;
 
   Waypoint goal_;

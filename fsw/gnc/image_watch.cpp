@@ -3,8 +3,8 @@
 namespace vbar::fsw::gnc {
 namespace {
 
-/// Depends on every pixel and its place (Fowler, Noll, Vo 1991); 0 only for an image without variation, as of a camera
-/// whose noise is not modelled.
+/// Returns a checksum of every pixel and its place (Fowler, Noll, Vo 1991). It is 0 only for an image without
+/// variation, as of a camera whose noise is not modelled.
 std::uint64_t sum_of(const imaging::ImageView& image) {
   constexpr std::uint64_t kOffset = 0xCBF29CE484222325U;
   constexpr std::uint64_t kPrime = 0x100000001B3U;

@@ -1,6 +1,5 @@
 #pragma once
-// The health of cameras, as far as it shows without looking at what an image depicts: images that stop coming, and
-// images that are the last one again.
+// The health of cameras, independent of what their images depict: missing images, and repetitions of the last image.
 
 #include <array>
 #include <cstddef>
@@ -15,15 +14,15 @@ namespace vbar::fsw::gnc {
 
 class ImageWatch {
  public:
-  /// Checks the images of the step. One with the same pixels as the last of its camera is discarded: the noise of no
-  /// two images is the same.
+  /// Checks the images of the step. An image with the same pixels as the last one of its camera is discarded: the noise
+  /// of two images differs.
   void update(GpsTime now, Inbox& inbox, faults::FaultMonitor& faults);
 
  private:
   struct Camera {
-    std::optional<GpsTime> last;  ///< image
-    Duration interval{0};         ///< between the last two
-    std::uint64_t sum = 0;        ///< of its pixels
+    std::optional<GpsTime> last;  ///< time of the last image
+    Duration interval{0};         ///< interval between the last two
+    std::uint64_t sum = 0;        ///< checksum of its pixels
   };
 
   static constexpr double kMissingIntervals = 3.0;

@@ -1,5 +1,5 @@
 #pragma once
-// receive: decode, check and file each packet by its time tag. Packets are not processed until the step.
+// receive: decodes, checks and sorts each packet by its time tag. Packets are not processed until the step.
 
 #include <array>
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace vbar::fsw::gnc {
 
-/// Instants from 1980 to 2126, and spans up to 115 days: their sums and differences stay within int64.
+/// Limits of times: instants from 1980 to 2126, and spans up to 115 days. Their sums and differences stay within int64.
 inline constexpr GpsTime kLatestTime{std::int64_t{1} << 62};
 inline constexpr Duration kLongestSpan = duration_of_seconds(10'000'000);
 constexpr bool is_usable(GpsTime time) {
@@ -23,7 +23,7 @@ constexpr bool is_usable(Duration span) {
   return span.ns > 0 && span <= kLongestSpan;
 }
 
-/// Counters of the packets so far, for telemetry.
+/// Counts the packets so far, for telemetry.
 struct PacketCounters {
   std::int32_t accepted = 0;
   std::int32_t rejected_checksum = 0;
@@ -35,11 +35,11 @@ struct PacketCounters {
   std::int32_t dropped_full = 0;      ///< queue full: the newest is dropped
 };
 
-/// Packets of the coming step: a queue of each message that message_list.h routes into one. A queue that is full
-/// refuses the newest packet.
+/// Holds the packets of the coming step: a queue of each message that message_list.h routes into one. A full queue
+/// rejects the newest packet.
 class Inbox {
  public:
-  /// Packets of one message that may arrive in a step.
+  /// Largest number of packets of one message in a step.
   template <class Message>
   static constexpr std::size_t kCapacity = packets::MessageTraits<Message>::kRoute.capacity;
   template <class Message>
@@ -47,21 +47,21 @@ class Inbox {
 
   explicit Inbox(std::uint8_t spacecraft);
 
-  /// Receives one packet; the status is the reason for a refusal. Never reads past `bytes`.
+  /// Receives one packet. The status is the reason for a rejection. Never reads past `bytes`.
   Status receive(std::span<const std::uint8_t> bytes);
 
   /// Counts an entry that proved unusable at the step (late, or of the future).
   void count_unusable_time() { ++counters_.rejected_time; }
 
-  /// Counts a telecommand whose content the step refused.
+  /// Counts a telecommand whose content the step rejected.
   void count_bad_content() { ++counters_.rejected_content; }
 
-  /// Discards all entries at the end of a step. Until the next one, expected at `next_step`, image tiles later
-  /// than that are refused: a tile of the far future would otherwise block all earlier ones.
+  /// Discards all entries at the end of a step. Until the next step, expected at `next_step`, image tiles later than
+  /// that are rejected: a tile of the far future would otherwise block all earlier ones.
   void clear(GpsTime next_step);
 
   [[nodiscard]] const PacketCounters& counters() const { return counters_; }
-  /// What outlives a step, for the snapshot.
+  /// Holds what outlives a step, for the snapshot.
   struct Retained {
     PacketCounters counters;
     Duration step_period;
@@ -71,16 +71,16 @@ class Inbox {
     counters_ = retained.counters;
     step_period_ = retained.step_period;
   }
-  /// The packets of one message, in order of their time tags.
+  /// Returns the packets of one message, in order of their time tags.
   template <class Message>
   [[nodiscard]] const Queue<Message>& queue() const {
     return std::get<Queue<Message>>(queues_);
   }
-  /// The image of a camera (unit below kCameras) whose tiles arrived, complete or not.
+  /// Returns the image of a camera (unit below kCameras) whose tiles arrived, complete or not.
   [[nodiscard]] const imaging::ImageAssembly& image(std::size_t camera) const { return images_[camera]; }
-  /// The image of a camera is not to be used.
+  /// Discards the image of a camera.
   void discard_image(std::size_t camera) { images_[camera].clear(); }
-  /// Time from the last tick to the next one; 0 before the first tick.
+  /// Returns the time from the last tick to the next one; 0 before the first tick.
   [[nodiscard]] Duration step_period() const { return step_period_; }
 
  private:

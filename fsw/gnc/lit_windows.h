@@ -1,5 +1,6 @@
 #pragma once
-// Times at which a burn is seen by a camera: in sunlight, from the first images after dawn until shortly before dusk.
+// Times at which a camera observes the effect of a burn: in sunlight, from the first images after dawn until shortly
+// before dusk.
 
 #include "fsw/control/plan.h"
 #include "fsw/core/gps_time.h"
@@ -10,13 +11,13 @@ namespace vbar::fsw::gnc {
 
 class LitWindows {
  public:
-  /// `servicer_mean`: mean elements at `epoch`. Valid for the horizon of a plan: the Sun's direction is that of the
-  /// epoch.
+  /// `servicer_mean` holds at `epoch`. The windows are valid for the horizon of a plan: the direction of the Sun is
+  /// that of the epoch.
   LitWindows(GpsTime epoch, const orbit::QnsElements& servicer_mean);
 
   [[nodiscard]] bool allows(GpsTime time) const;
 
-  /// For the solver; this object must outlive it.
+  /// Returns the windows for a solver. This object must outlive them.
   [[nodiscard]] control::ThrustWindows thrust_windows() const;
 
   static constexpr Duration kAfterDawn = duration_of_seconds(120);

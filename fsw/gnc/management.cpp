@@ -5,7 +5,7 @@
 namespace vbar::fsw::gnc {
 namespace {
 
-/// Defaults are those of the paper's mission; a telecommand replaces them.
+/// Returns the parameters of the paper's mission; a telecommand replaces them.
 gnc_configuration default_configuration() {
   gnc_configuration c{};
   c.compute_latency_ns = 1 * kNanosecondsPerSecond;
@@ -41,17 +41,18 @@ void Management::update(GpsTime now, const Telecommands& telecommands) {
   if (telecommands.is_new<waypoint_table>()) take(now, *telecommands.in_force<waypoint_table>());
   if (telecommands.is_new<mode_command>()) mode_ = static_cast<Mode>(telecommands.in_force<mode_command>()->mode);
   pass_waypoints(now);
-  if (mode_ == Mode::kRetreat && !has_safety_) mode_ = Mode::kHold;  // nothing states what a retreat would be
+  if (mode_ == Mode::kRetreat && !has_safety_) mode_ = Mode::kHold;  // the parameters of a retreat are unknown
   if (mode_ == Mode::kApproach && next_ == count_ && count_ > 0) mode_ = Mode::kStationKeeping;
 }
 
-/// A waypoint is reached when its time comes: the schedule is fixed in time, whatever the error on arrival.
+/// Passes the waypoints whose time has come: the schedule is fixed in time, whatever the error on arrival.
 void Management::pass_waypoints(GpsTime now) {
   while (next_ < count_ && waypoints_[next_].time <= now) ++next_;
 }
 
-/// The position being kept ends with its table, unless the new table has reached one as well. A command to keep a
-/// position that has not been reached yet stays in force: table and command may arrive in any order.
+/// Replaces the waypoint table. Station keeping ends with the table of its position, unless the new table has reached a
+/// waypoint as well. A command to keep a position that has not been reached yet stays in force: table and command may
+/// arrive in any order.
 void Management::take(GpsTime now, const waypoint_table& table) {
   const bool was_keeping = mode() == Mode::kStationKeeping;
   reference_semi_major_axis_ = table.reference_semi_major_axis_m;

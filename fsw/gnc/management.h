@@ -18,13 +18,13 @@ enum class Mode : std::int8_t {
   kRetreat = 4,         ///< recede from the target, then keep station on a safe orbit, until the next command
 };
 
-/// A relative orbit to be reached at a time.
+/// Holds a relative orbit to be reached at a time.
 struct Waypoint {
   std::int32_t index = -1;
-  std::int8_t control_mode = 0;  ///< solver of the leg that ends here, numbers of control::Solver
+  std::int8_t control_mode = 0;  ///< solver of the leg that ends here, kId of the solver list
   GpsTime time;
   Vector6 roe = Vector6::Zero();   ///< dimensionless mean ROE
-  double keep_out_radius_m = 0.0;  ///< of drifts after the burns of the leg that ends here
+  double keep_out_radius_m = 0.0;  ///< distance to be kept by drifts after the burns of the leg that ends here
 };
 
 class Management {
@@ -37,20 +37,20 @@ class Management {
   /// to `now`.
   void update(GpsTime now, const Telecommands& telecommands);
 
-  /// Station keeping without a waypoint reached is idle: there is no position to keep yet.
+  /// Returns the mode. Station keeping before the first waypoint is idle: there is no position to keep yet.
   [[nodiscard]] Mode mode() const { return mode_ == Mode::kStationKeeping && next_ == 0 ? Mode::kIdle : mode_; }
-  /// A fault calls for the retreat: until the next mode command. Nothing happens while idle.
+  /// Starts the retreat that a fault demands, until the next mode command. Has no effect while idle.
   void retreat() {
     if (mode() != Mode::kIdle) mode_ = Mode::kRetreat;
   }
-  /// Null unless one is in force.
+  /// Returns the safety configuration in force, or nullptr.
   [[nodiscard]] const safety_configuration* safety() const { return has_safety_ ? &safety_ : nullptr; }
   [[nodiscard]] const gnc_configuration& configuration() const { return configuration_; }
   [[nodiscard]] double reference_semi_major_axis() const { return reference_semi_major_axis_; }
 
-  /// The waypoint ahead (time later than the last update), or nullptr.
+  /// Returns the waypoint ahead (time later than the last update), or nullptr.
   [[nodiscard]] const Waypoint* next_waypoint() const { return next_ < count_ ? &waypoints_[next_] : nullptr; }
-  /// The waypoint last passed, or nullptr.
+  /// Returns the waypoint last passed, or nullptr.
   [[nodiscard]] const Waypoint* last_waypoint() const { return next_ > 0 ? &waypoints_[next_ - 1] : nullptr; }
 
  private:

@@ -20,7 +20,7 @@ void copy_lower_triangle(const Matrix6& from, double (&to)[21]) {
   }
 }
 
-/// The largest of the four first.
+/// Computes the largest of the four components first.
 void copy_rotation(const Matrix3& R, double (&to)[4]) {
   const double trace = R.trace();
   int largest = 0;

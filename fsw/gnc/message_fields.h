@@ -1,5 +1,5 @@
 #pragma once
-// Vectors, matrices and rotations in the fields of packets: encoding and decoding.
+// Encoding and decoding of vectors, matrices and rotations in the fields of packets.
 
 #include "fsw/core/types.h"
 
@@ -25,17 +25,17 @@ inline void copy(const Vector6& from, double (&to)[6]) {
   for (int k = 0; k < 6; ++k) to[k] = from(k);
 }
 
-/// In row-major order.
+/// Copies the lower triangle of a symmetric matrix, by rows.
 void copy_lower_triangle(const Matrix6& from, double (&to)[21]);
 
-/// Hamilton quaternion w, x, y, z of a rotation matrix that transforms components (Shepperd 1978).
+/// Writes the Hamilton quaternion w, x, y, z of a rotation matrix that transforms components (Shepperd 1978).
 void copy_rotation(const Matrix3& R, double (&to)[4]);
 
-/// Whether the length of the quaternion differs from one by less than a part in a thousand.
+/// Returns whether the length of the quaternion differs from one by less than a part in a thousand.
 bool is_rotation(const double (&q)[4]);
 
-/// The rotation matrix of a Hamilton quaternion w, x, y, z of any length: `q_a_b` transforms components from b to a.
-/// The quaternion must not be zero.
+/// Returns the rotation matrix of a Hamilton quaternion w, x, y, z of any length but zero: `q_a_b` transforms
+/// components from b to a.
 Matrix3 rotation(const double (&q)[4]);
 
 // NOLINTEND(cppcoreguidelines-avoid-c-arrays)

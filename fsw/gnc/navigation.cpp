@@ -73,7 +73,7 @@ void NavigationSolution::drop_state() {
   state_.has_target = false;
 }
 
-/// The source of the newest measurement; of several, the most accurate.
+/// Returns the source of the newest measurement, or the most accurate one of several.
 NavigationSource NavigationSolution::source_of(GpsTime now, const TrunkNavigation& measurements) const {
   if (measurements.uses<sources::IdealSource>() && state_.last_measurement == now) return NavigationSource::kIdeal;
   const auto& carrier = measurements.source<sources::CarrierSource>();
@@ -123,7 +123,7 @@ std::span<const navigation::Burn> NavigationSolution::own_burns() {
   return std::span(burns_).first(maneuver_count_);
 }
 
-/// The estimate of a filter becomes the reference state if it is later than the current one.
+/// Adopts an estimate as the reference state if it is later than the current one.
 void NavigationSolution::set_reference(const Pair& estimated) {
   if (!is_orbit(estimated.servicer) || !is_orbit(estimated.target)) return;
   if (has_reference_ && estimated.epoch <= reference_.epoch) return;
@@ -163,7 +163,7 @@ void NavigationSolution::expect_maneuver(std::int32_t maneuver_id, GpsTime time,
   remember({maneuver_id, time, dv_rtn});
 }
 
-/// Without measurements the reference state follows at a distance, so that the work of a step stays bounded.
+/// Moves the reference state to `time`: without measurements it follows, so that the work of a step stays bounded.
 void NavigationSolution::move_reference(GpsTime time) {
   const Result<Pair> moved = flown_to(time);
   has_reference_ = moved.ok();
@@ -172,7 +172,7 @@ void NavigationSolution::move_reference(GpsTime time) {
   discard_before(time);
 }
 
-/// The reference states propagated to `time`, including the own maneuvers before it.
+/// Returns the reference states propagated to `time`, with the servicer's maneuvers before it.
 Result<NavigationSolution::Pair> NavigationSolution::flown_to(GpsTime time) const {
   orbit::CartesianState servicer = reference_.servicer;
   GpsTime reached = reference_.epoch;
@@ -193,8 +193,8 @@ Result<NavigationSolution::Pair> NavigationSolution::flown_to(GpsTime time) cons
   return Pair{time, servicer, target.value()};
 }
 
-/// In order of time, those of one instant in order of their number. If the list is full, the reference state advances
-/// past the oldest maneuver: only measurements before it can then no longer be used.
+/// Inserts a maneuver in order of time, those of one instant in order of their number. If the list is full, the
+/// reference state advances past the oldest maneuver: measurements before it can then no longer be used.
 void NavigationSolution::remember(const OwnManeuver& maneuver) {
   if (maneuver_count_ == kMaxManeuvers) {
     if (has_reference_) move_reference(maneuvers_[0].time + Duration{1});

@@ -28,7 +28,7 @@ enum class NavigationSource : std::int8_t {
   kPose = 6,
 };
 
-/// The navigation solution at `epoch`.
+/// Holds the navigation solution at `epoch`.
 struct NavigationState {
   bool valid = false;       ///< sufficient for planning
   bool has_target = false;  ///< sufficient for pointing a camera
@@ -52,8 +52,8 @@ class NavigationSolution {
 
   [[nodiscard]] const NavigationState& state() const { return state_; }
 
-  /// Whether a source that uses a camera is selected: the camera is pointed before the source's telecommands are
-  /// complete.
+  /// Returns whether a measurement source that uses a camera is selected: the camera is pointed before the telecommands
+  /// of the source are complete.
   [[nodiscard]] bool uses_camera() const { return uses_camera_; }
 
   /// Returns 1 sigma of a * ROE (m, six components) at the state, for the estimate of `filter`.
@@ -62,7 +62,7 @@ class NavigationSolution {
   [[nodiscard]] Matrix6 a_roe_covariance_m2(const filter::RelativeNavigationFilter& filter) const;
 
  private:
-  /// Both spacecraft at one instant, before any impulse of that instant.
+  /// Holds the states of both spacecraft at one instant, before any impulse of that instant.
   struct Pair {
     GpsTime epoch;
     orbit::CartesianState servicer;

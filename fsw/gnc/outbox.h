@@ -1,5 +1,5 @@
 #pragma once
-// Packets out: headers, sequence counts, the sink. The only output of the flight software.
+// Output of packets, the only one of the flight software: headers, sequence counts, the sink.
 
 #include <array>
 #include <cstdint>
@@ -20,8 +20,8 @@ class Outbox {
     context_ = context;
   }
 
-  /// Encodes and emits a message that message_list.h lists as from the flight software. A message with a NaN or
-  /// infinity is dropped and counted: the interface excludes them. `unit`: of the device that it is about.
+  /// Encodes and sends a message that message_list.h lists as from the flight software. A message with a NaN or
+  /// infinity is dropped and counted: the interface excludes such values. `unit` is that of the device concerned.
   template <class Message>
   void send(GpsTime time, const Message& message, std::uint8_t unit = 0) {
     packets::PacketHeader header;
@@ -44,13 +44,13 @@ class Outbox {
   [[nodiscard]] std::uint8_t spacecraft() const { return spacecraft_; }
   [[nodiscard]] std::int32_t dropped() const { return dropped_; }
 
-  /// Of the packets of one message: 14 bits.
+  /// Holds the sequence count of the packets of one message: 14 bits.
   template <class Message>
   struct SequenceCount {
     std::uint16_t next = 0;
   };
   using SequenceCounts = packets::TupleOfRoute<&packets::is_from_flight, SequenceCount>::Type;
-  /// What outlives a step, for the snapshot.
+  /// Holds what outlives a step, for the snapshot.
   struct Retained {
     SequenceCounts sequence_counts;
     std::int32_t dropped = 0;

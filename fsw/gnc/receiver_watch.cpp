@@ -3,7 +3,7 @@
 namespace vbar::fsw::gnc {
 namespace {
 
-// An interval between steps that exceeds the last one by this factor is a gap, in which packets were lost.
+// Factor by which the interval between steps exceeds the last one in a gap, in which packets were lost.
 constexpr double kGap = 1.5;
 
 }  // namespace

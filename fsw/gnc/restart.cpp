@@ -13,12 +13,12 @@ constexpr std::uint32_t kMagic = 0x52414256;  // "VBAR" in the order of a little
 constexpr std::uint32_t kVersion = 4;
 constexpr Duration kOldestWarm = duration_of_seconds(600);
 
-/// Without padding; the representation is that of the computer.
+/// Precedes a snapshot; without padding. The representation is that of the computer.
 struct SnapshotHeader {
   std::uint32_t magic = kMagic;
   std::uint32_t version = kVersion;
-  std::uint64_t bytes = 0;  ///< of the snapshot with this header
-  std::int64_t step = 0;    ///< the next one
+  std::uint64_t bytes = 0;  ///< size of the snapshot with this header
+  std::int64_t step = 0;    ///< number of the next step
   std::int64_t time_ns = 0;
   std::uint32_t spacecraft = 0;
   std::uint32_t crc = 0;  ///< CRC-32 of all that precedes it and all that follows it
@@ -35,8 +35,8 @@ std::uint32_t checksum(std::span<const std::uint8_t> snapshot) {
   return of_header ^ packets::crc32_ieee(snapshot.subspan(sizeof(SnapshotHeader)));
 }
 
-/// The state is copied as bytes, which suits every type whose copy would be that of its bytes; Eigen's own matrices
-/// declare a copy and are not trivially copyable by the letter of the language.
+/// Copies the state as bytes. All its types would be copied so, but Eigen's matrices declare a copy and are therefore
+/// not trivially copyable by the language.
 void copy_bytes(void* to, const void* from, std::size_t count) {
   std::memcpy(to, from, count);
 }
@@ -88,7 +88,8 @@ Status Gnc::restore(std::span<const std::uint8_t> snapshot) {
   return Status::kOk;
 }
 
-/// The first step after a restart of the computer is accepted at any usable time: its age decides what is kept.
+/// Returns whether a step at `now` is accepted. The first one after a restart of the computer is accepted at any usable
+/// time: the age of the state decides what is kept.
 bool Gnc::accepts(GpsTime now) {
   if (!is_usable(now)) return false;
   if (!stepped_ || is_restored_) return true;
@@ -104,7 +105,7 @@ bool Gnc::accepts(GpsTime now) {
   return false;
 }
 
-/// The health packet has the time of the last step, and the number of the next one.
+/// Reports a rejected step. The health packet has the time of the last step and the number of the next one.
 void Gnc::refuse(GpsTime now) {
   const double jump_s = (static_cast<double>(now.ns) - static_cast<double>(now_.ns)) / 1e9;
   faults_.check(now_, {.fault = telemetry_health::kFaultClock, .is_detected = true, .argument = jump_s});
@@ -118,7 +119,7 @@ void Gnc::refuse(GpsTime now) {
   inbox_.clear(now_);
 }
 
-/// After a restore: a state that is too old is discarded, and the faults that report the restart are raised.
+/// Continues after a restore: discards a state that is too old, and raises the faults that report the restart.
 void Gnc::resume(GpsTime now) {
   if (!is_restored_) return;
   is_restored_ = false;
@@ -139,7 +140,7 @@ void Gnc::resume(GpsTime now) {
                       .argument = static_cast<double>(Status::kOutOfRange)});
 }
 
-/// Everything but the telecommands, the faults and the number of the step is as at the first step.
+/// Re-initialises everything but the telecommands, the faults and the number of the step.
 void Gnc::restart(GpsTime now) {
   telecommands_.renew(now);
   // Constructed in place: a second state would exceed the stack on board.

@@ -5,10 +5,10 @@
 namespace vbar::fsw::gnc {
 namespace {
 
-// A burn of the menu depends on the place in the orbit; the along-track part by itself does not.
+// Longest age of a burn of the menu, which depends on the place in the orbit. Its along-track part does not.
 constexpr Duration kMenuIsCurrent = duration_of_seconds(120);
 
-// After the burn, until measurements show its effect.
+// Time after the burn until measurements show its effect.
 constexpr Duration kSettling = duration_of_seconds(600);
 
 }  // namespace
@@ -66,8 +66,9 @@ void RetreatSequence::update(GpsTime now, const Situation& situation, const Mana
   }
 }
 
-/// On the side of the target where the servicer is, no nearer than it is, with parallel eccentricity and inclination
-/// vectors: the separation across the flight direction that an error of the drift cannot take away.
+/// Places the hold orbit on the side of the target where the servicer is, not nearer than the servicer is, with
+/// parallel eccentricity and inclination vectors: an error of the drift does not reduce their separation across the
+/// flight direction.
 void RetreatSequence::choose_hold_orbit(const Vector6& roe, const Management& management) {
   const safety_configuration& safety = *management.safety();
   const double a = management.reference_semi_major_axis();

@@ -6,10 +6,10 @@
 namespace vbar::fsw::gnc {
 namespace {
 
-/// Any change within one aligned word is detected with certainty, because multiplication by an odd number maps distinct
-/// words to distinct ones; any other with a probability of 1 - 2^-64. (Fowler, Noll and Vo's hash, with words of 64
-/// bits in place of bytes: a step costs one multiplication for eight bytes. The words are distributed over four sums,
-/// whose multiplications do not wait for each other.)
+/// Returns a checksum that detects any change within one aligned word with certainty, because multiplication by an odd
+/// number maps distinct words to distinct ones, and any other change with a probability of 1 - 2^-64. It is the hash of
+/// Fowler, Noll and Vo with words of 64 bits in place of bytes: one multiplication for eight bytes. The words are
+/// distributed over four sums, whose multiplications do not wait for each other.
 std::uint64_t checksum(const filter::RelativeNavigationFilter& trunk) {
   constexpr std::uint64_t kPrime = 0x100000001B3U, kBasis = 0xCBF29CE484222325U;
   constexpr std::size_t kWords = sizeof(filter::RelativeNavigationFilter) / sizeof(std::uint64_t);
@@ -33,8 +33,8 @@ std::uint64_t checksum(const filter::RelativeNavigationFilter& trunk) {
   return first;
 }
 
-/// As bytes, with their padding: assignment would first read what may be damaged, such as whether an optional value is
-/// present. The trunk consists of plain objects without pointers.
+/// Copies bytes with their padding: assignment would first read what may be damaged, such as whether an optional value
+/// is present. The filter consists of plain objects without pointers.
 void copy_bytes(filter::RelativeNavigationFilter& to, const filter::RelativeNavigationFilter& from) {
   std::memcpy(static_cast<void*>(&to), static_cast<const void*>(&from), sizeof(filter::RelativeNavigationFilter));
 }

@@ -1,6 +1,6 @@
 #pragma once
-// Which times of a step are accepted: a clock that jumps must neither silence the flight software nor carry its state
-// to another time unnoticed.
+// Acceptance of the time of a step: a clock that jumps must neither silence the flight software nor carry its state to
+// another time unnoticed.
 
 #include "fsw/core/gps_time.h"
 #include "fsw/core/result.h"
@@ -10,18 +10,19 @@ namespace vbar::fsw::gnc {
 class StepClock {
  public:
   /// Longest accepted time between two steps: one and a half times the age up to which a snapshot is continued, so that
-  /// a link that was down for that long is no jump. Beyond it, knowledge has to be gained again in any case.
+  /// a link that was down for that long is not a jump. After a longer time navigation restarts in any case.
   static constexpr Duration kLongestGap = duration_of_seconds(900);
-  /// Number of refused ticks in a row, each one period after the last, whose successor is accepted: the clock did jump.
+  /// Number of rejected ticks in a row, each one period after the last, whose successor is accepted: the clock did
+  /// jump.
   static constexpr int kConsistentTicks = 3;
 
   enum class Verdict {
     kContinue,  ///< the next step
-    kRestart,   ///< of a clock that was set: what is known belongs to another time
+    kRestart,   ///< the clock was set: the state belongs to another time
     kRefuse,
   };
 
-  /// Judges `now`, usable as a time, after a step at `last`. `period`: of the tick, 0 if it is unknown.
+  /// Judges `now`, usable as a time, after a step at `last`. `period` is that of the tick, 0 if unknown.
   Verdict judge(GpsTime last, GpsTime now, Duration period) {
     const bool is_next = now > last && now - last <= (period > kLongestGap ? period : kLongestGap);
     const bool is_consistent = count_ > 0 && period.ns > 0 && now - refused_ == period;
@@ -34,12 +35,12 @@ class StepClock {
     return Verdict::kRefuse;
   }
 
-  /// Telecommand: the next time is accepted.
+  /// Accepts the next time, by telecommand.
   void accept_next() { accepts_next_ = true; }
 
  private:
-  GpsTime refused_;  ///< the last one
-  int count_ = 0;    ///< refused in a row, consistent with each other
+  GpsTime refused_;  ///< last rejected time
+  int count_ = 0;    ///< rejected in a row, consistent with each other
   bool accepts_next_ = false;
 };
 

@@ -16,7 +16,7 @@
 namespace vbar::fsw::gnc {
 namespace {
 
-constexpr double kLongestHorizon_s = 2e5;  // of an assessment of a drift: forty revolutions
+constexpr double kLongestHorizon_s = 2e5;  // horizon of the assessment of a drift: forty revolutions
 constexpr double kLargestARoe = 1e6;       // m; beyond it the relative-orbit models are not valid
 
 bool is_usable_span(std::int64_t ns) {

@@ -7,9 +7,9 @@
 
 namespace vbar::fsw::gnc {
 
-// Those of navigation stand with their conversion: trunk_configuration.h, and the folders of fsw/sources.
+// The checks of navigation are beside their conversion: trunk_configuration.h, and the folders of fsw/sources.
 
-/// One to sixteen waypoints in order of time, within the domain of the relative-orbit models.
+/// Accepts one to sixteen waypoints in order of time, within the domain of the relative-orbit models.
 [[nodiscard]] bool is_valid(const waypoint_table& table);
 [[nodiscard]] bool is_valid(const gnc_configuration& configuration);
 [[nodiscard]] bool is_valid(const mode_command& command);

@@ -3,10 +3,11 @@
 namespace vbar::fsw::gnc {
 namespace {
 
-// The last of the list stands for all: the list of vbar.lcm is that of the code.
+// The last value stands for all: the list of vbar.lcm is that of the code.
 static_assert(static_cast<int>(TelecommandStatus::kContradiction) == telemetry_telecommand::kStatusContradiction);
 
-/// Older time tag, or the same with an older sequence count, which wraps at 14 bits. A repetition is not older.
+/// Returns whether `tag` has an older time, or the same time and an older sequence count, which wraps at 14 bits. A
+/// repetition is not older.
 bool is_older(const FilingTag& tag, const FilingTag& than) {
   if (tag.time != than.time) return tag.time < than.time;
   constexpr unsigned kCounts = 0x4000;

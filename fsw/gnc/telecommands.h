@@ -1,10 +1,10 @@
 #pragma once
-// The telecommands in force: of every kind and unit the newest valid one.
+// The telecommands in force: the newest valid one of every kind and unit.
 //
 // A telecommand is checked in the step that it arrives for, stored, and acknowledged. Its users derive their settings
-// from the store when it has changed, and combine telecommands that belong together when all of them are present:
-// neither the order in which telecommands arrive nor their distribution over steps has an effect. A refused telecommand
-// leaves the previous one in force.
+// from the store when it has changed, and combine telecommands that belong together when all of them are present.
+// Neither the order in which telecommands arrive nor their distribution over steps has an effect. A rejected
+// telecommand leaves the previous one in force.
 
 #include <array>
 #include <cstddef>
@@ -19,7 +19,7 @@
 
 namespace vbar::fsw::gnc {
 
-/// Numbers of telemetry_telecommand.status.
+/// Statuses, with the numbers of telemetry_telecommand.status.
 enum class TelecommandStatus : std::int8_t {
   kAccepted = 0,
   kFuture = 1,         ///< time tag after the step
@@ -51,11 +51,11 @@ class Telecommands {
   /// and arrive for the same step, the one listed later in message_list.h is refused.
   void update(GpsTime now, Inbox& inbox, const TelecommandRules& rules);
 
-  /// After a restart at `now`: the next update treats those in force as new, so that their users derive their settings
-  /// again. One whose time tag is later, of a clock that has been set back, has that of the restart from now on.
+  /// Marks the telecommands in force as new for the next update, after a restart at `now`, so that their users derive
+  /// their settings again. A later time tag, of a clock that has been set back, becomes that of the restart.
   void renew(GpsTime now);
 
-  /// The telecommand in force, or nullptr. `unit` must be below the number of units of its kind.
+  /// Returns the telecommand in force, or nullptr. `unit` must be below the number of units of its kind.
   template <class Message>
   [[nodiscard]] const Message* in_force(std::size_t unit = 0) const {
     const auto& value = slot<Message>(unit).value;
@@ -72,13 +72,13 @@ class Telecommands {
   [[nodiscard]] GpsTime time_of(std::size_t unit = 0) const {
     return slot<Message>(unit).tag.time;
   }
-  /// Whether the last update replaced it.
+  /// Returns whether the last update replaced the telecommand.
   template <class Message>
   [[nodiscard]] bool is_new(std::size_t unit = 0) const {
     return slot<Message>(unit).is_new;
   }
 
-  /// Whether the last update replaced any.
+  /// Returns whether the last update replaced any telecommand.
   [[nodiscard]] bool has_changed() const { return has_changed_; }
 
   /// Acknowledges each telecommand of the last update, in the order of message_list.h, then of time tags.
@@ -93,7 +93,7 @@ class Telecommands {
     std::optional<Message> proposed;  ///< of the step, valid by itself
     FilingTag proposed_tag;
   };
-  /// Of all units of one kind.
+  /// Holds the slots of all units of one kind.
   template <class Message>
   struct Slots {
     std::array<Slot<Message>, packets::MessageTraits<Message>::kRoute.units> units{};

@@ -1,5 +1,6 @@
 #pragma once
-// Telecommands of what all sources have in common, validated and converted to settings of the trunk.
+// Telecommands that all measurement sources have in common, validated and converted to settings of the relative
+// navigation filter.
 
 #include <optional>
 
@@ -9,16 +10,16 @@
 
 namespace vbar::fsw::gnc {
 
-/// Known sources, ideal navigation alone, and process noise within its limits.
+/// Accepts known sources, ideal navigation without any other, and process noise within its limits.
 [[nodiscard]] bool is_valid(const navigation_configuration& configuration);
 [[nodiscard]] bool is_valid(const earth_configuration& configuration);
 [[nodiscard]] bool is_valid(const thruster_configuration& configuration);
-/// A bound orbit, or ROE within the domain of their model, with positive standard deviations.
+/// Accepts a bound orbit, or ROE within the domain of their model, with positive standard deviations.
 [[nodiscard]] bool is_valid(const target_apriori& apriori);
 
-/// From the telecommands in force; default values in place of those not received.
+/// Returns the settings by the telecommands in force, with default values for those not received.
 [[nodiscard]] filter::FilterSettings trunk_settings(const Telecommands& telecommands);
-/// `time`: its epoch.
+/// Returns the a-priori orbit; `time` is its epoch.
 [[nodiscard]] filter::TargetApriori apriori_of(const target_apriori& known, GpsTime time);
 
 }  // namespace vbar::fsw::gnc

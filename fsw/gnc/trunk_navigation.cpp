@@ -23,7 +23,8 @@ void for_each(Tuple& sources, Visitor&& visit) {
   std::apply([&](auto&... source) { (visit(source, index++), ...); }, sources);
 }
 
-/// False for a quaternion whose length differs from one by more than a part in a thousand, or for an impossible rate.
+/// Decodes an attitude. Returns false for a quaternion whose length differs from one by more than a part in a thousand,
+/// or for an impossible rate.
 template <class Message>
 bool attitude_of(const Message& message, navigation::AttitudeSample& sample) {
   if (!is_rotation(message.q_eci_body)) return false;
@@ -32,7 +33,7 @@ bool attitude_of(const Message& message, navigation::AttitudeSample& sample) {
   return sample.rate_body.squaredNorm() <= kMaxRate * kMaxRate;
 }
 
-/// Calls put(sample) for each attitude of the queue that is one.
+/// Calls put(sample) for each valid attitude of the queue.
 template <class Queue, class Put>
 void for_each_attitude(GpsTime now, const Queue& packets, Inbox& inbox, Put&& put) {
   for (std::size_t k = 0; k < packets.size(); ++k) {
@@ -48,7 +49,7 @@ void for_each_attitude(GpsTime now, const Queue& packets, Inbox& inbox, Put&& pu
   }
 }
 
-// The last of the list stands for all: the list of vbar.lcm is that of the code.
+// The last value stands for all: the list of vbar.lcm is that of the code.
 static_assert(static_cast<int>(AidState::kFailed) == telemetry_event::kAidFailed);
 
 telemetry_event event_of(const sources::AidTransition& transition, std::int32_t device, std::int64_t step) {
@@ -74,7 +75,7 @@ void TrunkNavigation::configure(GpsTime now, const Telecommands& telecommands) {
   }
 }
 
-/// A source is used if it is selected and all its telecommands are in force.
+/// Activates the sources that are selected and have all their telecommands in force, and stops the others.
 void TrunkNavigation::select(GpsTime now, const Telecommands& telecommands) {
   const auto* navigation = telecommands.in_force<navigation_configuration>();
   if (navigation == nullptr) return;
@@ -90,7 +91,8 @@ void TrunkNavigation::select(GpsTime now, const Telecommands& telecommands) {
   });
 }
 
-/// The frame of the command turns with the orbit, so that the trunk's state is propagated to the time.
+/// Returns the commanded attitude at `time`. The frame of the command rotates with the orbit, so that the state of the
+/// filter is propagated to that time.
 std::optional<Matrix3> TrunkNavigation::commanded_attitude(GpsTime time) const {
   if (!platform_.pointing || !trunk_.absolute_orbit().started()) return std::nullopt;
   const auto servicer = orbit::propagate_j2(trunk_.servicer(), seconds(time - trunk_.epoch()));
@@ -116,7 +118,7 @@ void TrunkNavigation::update(GpsTime now, Inbox& inbox, std::span<const navigati
   Context context{now, inbox, platform_, gnss_};
   for_each(sources_, [](auto& source, std::uint8_t /*index*/) { source.aid().forget_inconsistency(); });
   take_attitudes(now, inbox);
-  gnss_.drop_before(trunk_.epoch());  // not at the end: the guard reads the epochs of the step
+  gnss_.drop_before(trunk_.epoch());  // not at the end: the safety monitor reads the epochs of the step
   gnss_.decode(inbox, trunk_.epoch());
   for_each(sources_, [&](auto& source, std::uint8_t index) {
     if (source.aid().is_on()) source.collect(context, {queue_, index});
@@ -132,7 +134,7 @@ void TrunkNavigation::update(GpsTime now, Inbox& inbox, std::span<const navigati
   }
 }
 
-/// Not beyond the oldest record that a source still owes.
+/// Returns the time up to which records are processed: the oldest one since which a record is pending.
 GpsTime TrunkNavigation::fusion_horizon(GpsTime now) const {
   GpsTime until = now;
   for_each(sources_, [&](const auto& source, std::uint8_t /*index*/) {
@@ -211,7 +213,8 @@ void TrunkNavigation::check_attitudes(GpsTime now, faults::FaultMonitor& faults)
                      .argument = attitudes_.difference});
 }
 
-/// The innovations are judged from the beginning afterwards.
+/// Isolates a source, or inflates the covariance if no other source confirms the orbit. The statistics of its
+/// innovations are re-initialised.
 template <class Source>
 void TrunkNavigation::isolate(GpsTime now, std::size_t index, Source& source) {
   const double mean = source.aid().consistency().mean();

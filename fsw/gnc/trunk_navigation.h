@@ -1,9 +1,9 @@
 #pragma once
-// Navigation of one trunk (fsw/trunk) and a list of sources.
+// Measurement scheduling: one relative navigation filter and a list of measurement sources.
 //
-// Sources turn packets into records, which wait in one queue in order of their time tags. The trunk is advanced from
-// record to record, never beyond the oldest time of which a source still owes a record: late inputs are used without
-// going back, and their order of arrival has no effect.
+// Sources turn packets into records, which wait in one queue in order of their time tags. The filter advances from
+// record to record, never beyond the oldest time since which a record of a source is pending. Late inputs are therefore
+// used without going back, and their order of arrival has no effect.
 
 #include <array>
 #include <cstdint>
@@ -28,25 +28,25 @@ namespace vbar::fsw::gnc {
 
 class TrunkNavigation {
  public:
-  /// Selects and sets the sources (true states until a telecommand does) from all telecommands in force together, if
-  /// one of them is new: their order of arrival has no effect. Estimates stay; the blocks of a source that is not
-  /// selected any more rest.
+  /// Selects and configures the sources from all telecommands in force together, if one of them is new: their order of
+  /// arrival has no effect. Without telecommands, true states are used. Estimates stay; the blocks of a source that is
+  /// no longer selected are deactivated.
   void configure(GpsTime now, const Telecommands& telecommands);
 
-  /// Processes the packets of the step. `burns`: the servicer's from the epoch on, executed or commanded, in order of
-  /// time. Records before the epoch are counted as unusable.
+  /// Processes the packets of the step. `burns` are the servicer's from the epoch on, executed or commanded, in order
+  /// of time. Records before the epoch are counted as unusable.
   void update(GpsTime now, Inbox& inbox, std::span<const navigation::Burn> burns);
 
-  /// Commanded pointing of the camera, valid until the next command.
+  /// Notes the commanded pointing of the camera, valid until the next command.
   void set_pointing(const sources::Pointing& pointing) { platform_.pointing = pointing; }
 
   [[nodiscard]] const filter::RelativeNavigationFilter& trunk() const { return trunk_; }
-  /// The receivers' epochs as decoded, from the trunk's epoch on.
+  /// Returns the decoded epochs of the receivers, from the epoch of the filter on.
   [[nodiscard]] const sources::GnssFrontEnd& gnss() const { return gnss_; }
-  /// At the end of a step, and at the beginning of the next one (state_integrity.h).
+  /// Protect the filter from the end of a step to the beginning of the next one (state_integrity.h).
   void seal() { integrity_.seal(trunk_); }
   [[nodiscard]] Integrity verify() { return integrity_.verify(trunk_); }
-  /// Whether the relative orbit suffices to plan.
+  /// Returns whether the relative orbit suffices to plan.
   [[nodiscard]] bool valid() const { return trunk_.solution_status() == filter::SolutionStatus::kEstimated; }
   template <class Source>
   [[nodiscard]] bool uses() const {
@@ -56,20 +56,20 @@ class TrunkNavigation {
   [[nodiscard]] const Source& source() const {
     return std::get<Source>(sources_);
   }
-  /// Latest measurement of the relative orbit that was processed.
+  /// Returns the time of the latest processed measurement of the relative orbit.
   [[nodiscard]] GpsTime last_measurement() const;
 
-  /// After update(): innovations outside their band, repeated restarts, records that contradict an orbit which others
-  /// confirm, a star tracker or a pose network in error, and receivers that fall silent. One fault stands for all
-  /// sources: it states the first.
+  /// Checks the sources after update(): innovations outside their band, repeated restarts, records that contradict an
+  /// orbit which others confirm, a star tracker or a pose network in error, and silent receivers. One fault stands for
+  /// all sources and states the first.
   ///
   /// A source whose innovations are outside their band, or which restarts repeatedly, is isolated for kIsolation if
-  /// others confirm the orbit: its records are not processed. Otherwise the covariance of the orbit grows by what the
-  /// innovations are too large; too small ones leave it as it is, which is on the safe side.
+  /// others confirm the orbit: its records are not processed. Otherwise the covariance of the orbit is scaled by the
+  /// excess of the innovations; innovations that are too small leave it as it is, which is conservative.
   void check_sources(GpsTime now, faults::FaultMonitor& faults);
 
   static constexpr Duration kIsolation = duration_of_seconds(600);
-  /// As after an unknown burn, m/s: the own orbit of a receiver that contradicts it and that nothing else measures.
+  /// Inflation of the absolute orbit, m/s, if its only receiver contradicts it: as after an unknown burn.
   static constexpr double kAbsoluteOrbitInflation = 0.05;
 
   /// Sends the telemetry of the sources in use, and an event of each change of the state of any source.
@@ -88,11 +88,11 @@ class TrunkNavigation {
   [[nodiscard]] GpsTime fusion_horizon(GpsTime now) const;
   void process_records(sources::Context& context, std::span<const navigation::Burn> burns);
 
-  /// Of the servicer, in the step.
+  /// Counts the attitudes of the servicer in the step.
   struct Attitudes {
     int received = 0;
     int refused = 0;
-    double difference = 0.0;  ///< of the last one refused, rad
+    double difference = 0.0;  ///< of the last rejected one, rad
   };
 
   filter::RelativeNavigationFilter trunk_;
@@ -103,7 +103,7 @@ class TrunkNavigation {
   Attitudes attitudes_;
   sources::GnssFrontEnd gnss_;
   sources::SourceList sources_;
-  std::array<GpsTime, std::tuple_size_v<sources::SourceList>> isolated_until_{};  ///< no record before is processed
+  std::array<GpsTime, std::tuple_size_v<sources::SourceList>> isolated_until_{};  ///< earlier records are not processed
   ReceiverWatch receivers_;
 };
 

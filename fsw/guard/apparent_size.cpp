@@ -7,17 +7,18 @@
 namespace vbar::fsw::guard {
 namespace {
 
-constexpr double kLitShare = 1.0 / 12.0;  // of the brightness of the brightest pixels
-constexpr int kBrightest = 60;            // pixels: more than hot ones are
-constexpr double kMinSigmas = 60.0;       // of their brightness
+constexpr double kLitShare = 1.0 / 12.0;  // threshold as a share of the brightness of the brightest pixels
+constexpr int kBrightest = 60;            // number of pixels, larger than that of hot pixels
+constexpr double kMinSigmas = 60.0;       // smallest brightness of these, in sigmas of the noise
 constexpr double kThresholdSigmas = 6.0;
 constexpr int kMinPixels = 300;
 constexpr int kMaxRimPixels = 4;  // hot pixels
 constexpr double kMinCosPhase = 0.0;
-constexpr double kBrightShare = 0.9;   // of a silhouette's size: what is brighter than the threshold, measured on Tango
+// Share of a silhouette's size that is brighter than the threshold, measured on Tango.
+constexpr double kBrightShare = 0.9;
 constexpr std::size_t kLevels = 4096;  // of 12 bits
 
-/// Brightness that kBrightest pixels exceed or reach.
+/// Returns the brightness that kBrightest pixels exceed or reach.
 int brightest_dn(const imaging::ImageView& image) {
   std::array<int, kLevels> histogram{};
   for (const std::uint16_t pixel : image.pixels) {

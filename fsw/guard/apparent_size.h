@@ -1,7 +1,7 @@
 #pragma once
-// The guard's own range: from the lit area of the target in an image. It uses neither the shape nor the attitude of the
-// target, only the square root of its mean silhouette area, which its attitude changes by a tenth, and the share of it
-// that the Sun lights at a phase angle, as of a sphere: (1 + cos(phase)) / 2.
+// Range of the safety monitor, from the lit area of the target in an image. It uses neither the shape nor the attitude
+// of the target: the square root of the mean silhouette area, which the attitude changes by a tenth, and the share that
+// the Sun lights at a phase angle, as on a sphere: (1 + cos(phase)) / 2.
 
 #include <optional>
 
@@ -10,32 +10,32 @@
 
 namespace vbar::fsw::guard {
 
-/// A camera, as far as the guard needs it.
+/// Holds the parameters of a camera that the safety monitor needs.
 struct GuardCamera {
   double focal_length_px = 0.0;
-  double dark_level_dn = 0.0;  ///< of a pixel without light
-  double noise_dn = 0.0;       ///< of such a pixel, 1 sigma
+  double dark_level_dn = 0.0;  ///< level of a pixel without light
+  double noise_dn = 0.0;       ///< noise of such a pixel, 1 sigma
 };
 
-/// Where the light comes from, and from where the target is seen: unit vectors in one frame.
+/// Holds the directions of light and line of sight: unit vectors in one frame.
 struct Illumination {
   Vector3 line_of_sight = Vector3::UnitZ();  ///< from the servicer to the target
   Vector3 to_sun = Vector3::UnitX();
 };
 
-/// Lit pixels of an image, and whether they touch its rim. None if the brightest are hardly brighter than the noise, as
-/// in penumbra.
+/// Counts the lit pixels of an image, and states whether they touch its rim. The count is 0 if the brightest pixels are
+/// hardly brighter than the noise, as in penumbra.
 struct LitArea {
   int pixels = 0;
   bool is_cut = false;
 };
 
-/// Pixels brighter than a twelfth of the brightest ones, so that neither exposure nor penumbra matters: white and dark
-/// surfaces of a target differ by about that factor.
+/// Counts the pixels brighter than a twelfth of the brightest ones, so that neither exposure nor penumbra has an
+/// effect: white and dark surfaces of a target differ by about that factor.
 LitArea lit_area(const imaging::ImageView& image, const GuardCamera& camera);
 
-/// Range, m. Empty for fewer lit pixels than a shape needs, a target cut by the rim, or a phase angle beyond 90 deg,
-/// where the lit part is a crescent or nothing.
+/// Returns the range, m. Returns nothing for fewer lit pixels than a shape needs, a target cut by the rim, or a phase
+/// angle beyond 90 deg, where at most a crescent is lit.
 std::optional<double> range_from_size(const LitArea& area, const GuardCamera& camera, const Illumination& illumination,
                                       double target_size_m);
 

@@ -5,18 +5,20 @@
 namespace vbar::fsw::guard {
 namespace {
 
-constexpr int kSeenPixels = 60;  // a crescent is seen, too
+constexpr int kSeenPixels = 60;  // a crescent counts as seen
 
-// A burn contradicts its command by more than this share of it, and by more than a thruster's least impulse.
+// Difference of a burn that contradicts its command: more than this share of it, and more than the minimum impulse of a
+// thruster.
 constexpr double kLargestShare = 0.2;
 constexpr double kMinImpulse = 2e-5;  // m/s
 
-// Closing: by more than the whole range in this time, and by more than relative orbits of metres do by themselves.
+// Closing rate that is an alarm: more than the whole range in this time, and more than that of natural relative orbits
+// of metres.
 constexpr double kClosingTime_s = 1000.0;
 constexpr double kOrbitalRate = 0.01;  // m/s
 constexpr double kClosingWithin_m = 150.0;
 
-/// Member by member: a copied aggregate would bring the padding of the stack into the state.
+/// Assigns member by member: a copied aggregate would bring the padding of the stack into the state.
 void set(Verdict& verdict, bool is_checked, bool is_alarm, double value) {
   verdict.is_checked = is_checked;
   verdict.is_alarm = is_alarm;
@@ -77,7 +79,7 @@ void Guard::take_report(std::int32_t maneuver_id, const Vector3& dv_rtn) {
   const double size = math::sqrt(commanded.squaredNorm());
   const double difference = math::sqrt((dv_rtn - commanded).squaredNorm());
   const bool is_alarm = difference > kLargestShare * size + kMinImpulse;
-  // Of several reports in a step, one that contradicts decides.
+  // One contradiction among several reports in a step decides.
   if (pending_.burns.is_alarm) return;
   set(pending_.burns, true, is_alarm, size > 0.0 ? difference / size : difference);
 }
@@ -96,7 +98,7 @@ void Guard::see(GpsTime time) {
   counted_until_ = time;
 }
 
-/// The time since the last count lies in sunlight or in shadow as a whole.
+/// Adds the time since the last count, which counts as sunlit or as shadow as a whole.
 void Guard::count_sunlight(GpsTime now) {
   const bool is_dark = in_shadow_ && math::abs(seconds(now - *in_shadow_)) <= kShadowHolds_s;
   if (!is_dark) lit_s_ += seconds(now - counted_until_);

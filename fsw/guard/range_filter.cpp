@@ -15,7 +15,7 @@ void RangeFilter::add(GpsTime time, double range_m) {
     logarithm_ = logarithm;
     return;
   }
-  // Gains of a filter of that memory in steady state; the first ones average.
+  // The gains are those of a filter with this memory in steady state; the first samples are averaged.
   const double steady = 2.0 * gap_s / kMemory_s;
   const double averaging = 1.0 / static_cast<double>(samples_ + 1);
   const double larger = steady > averaging ? steady : averaging;

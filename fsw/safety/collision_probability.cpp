@@ -20,7 +20,7 @@ double density(double z) {
   return kInverseSqrtTwoPi * math::exp(-0.5 * z * z);
 }
 
-/// Probability of a standard normal number between low and high, without cancellation in the tails.
+/// Returns the probability of a standard normal number between low and high, without cancellation in the tails.
 double interval(double low, double high) {
   if (low > 0.0) return 0.5 * (math::erfc(low * kSqrtHalf) - math::erfc(high * kSqrtHalf));
   if (high < 0.0) return 0.5 * (math::erfc(-high * kSqrtHalf) - math::erfc(-low * kSqrtHalf));
@@ -35,7 +35,7 @@ double probability(double p) {
   return clamp(p, 0.0, 1.0);
 }
 
-/// A coordinate, normally distributed.
+/// Holds a normally distributed coordinate.
 struct Normal {
   double mean = 0.0;
   double sigma = 1.0;
@@ -51,8 +51,8 @@ struct Normal {
   }
 };
 
-/// Integral over |x| <= limit of density(x) inner(x). x = limit sin(angle) removes the root of chords at the rim;
-/// only the interval of non-negligible density is sampled.
+/// Returns the integral over |x| <= limit of density(x) inner(x). x = limit sin(angle) removes the root of chords at
+/// the rim; only the interval of non-negligible density is sampled.
 template <class Inner>
 double integrate_chords(const Normal& x, double limit, const Inner& inner) {
   const double low = math::asin(clamp((x.mean - kTail * x.sigma) / limit, -1.0, 1.0));
@@ -66,13 +66,13 @@ double integrate_chords(const Normal& x, double limit, const Inner& inner) {
   return math::integrate(integrand, low, middle) + math::integrate(integrand, middle, high);
 }
 
-/// Half chord of a circle or sphere of `radius` at `x`.
+/// Returns half the chord of a circle or sphere of `radius` at `x`.
 double half_chord(double radius, double x) {
   const double squared = (radius - x) * (radius + x);
   return squared > 0.0 ? math::sqrt(squared) : 0.0;
 }
 
-/// Principal axes of a covariance, standard deviations increasing, with the mean in them.
+/// Holds the principal axes of a covariance in order of increasing standard deviations, with the mean in these axes.
 template <int N>
 struct Principal {
   std::array<Normal, static_cast<std::size_t>(N)> axis;
@@ -99,7 +99,8 @@ Status check_radius(double radius) {
   return radius >= 0.0 ? Status::kOk : Status::kOutOfRange;
 }
 
-/// Relative position and covariance in the plane perpendicular to the relative velocity, first axis along the miss.
+/// Holds relative position and covariance in the plane perpendicular to the relative velocity, first axis along the
+/// miss.
 struct Encounter {
   Vector2 miss = Vector2::Zero();
   Matrix2 covariance = Matrix2::Zero();
@@ -124,8 +125,7 @@ Result<Encounter> encounter_plane(const Vector3& r, const Vector3& v, const Matr
 Result<double> collision_probability_isotropic(double distance, double sigma, double radius) {
   if (!math::is_finite(distance + sigma + radius)) return Status::kNotFinite;
   if (distance < 0.0 || sigma <= 0.0 || radius < 0.0) return Status::kOutOfRange;
-  // For distances near zero the two densities cancel; the limit differs from the true value by (distance / sigma)^2 of
-  // it.
+  // For distances near zero the two densities cancel. The relative error of the limit is (distance / sigma)^2.
   constexpr double kConcentric = 1e-5;
   const double reach = radius / sigma;
   const double offset = distance / sigma;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kBeyondSigmas = 8.0;  ///< the probability beyond is below 1e-14
 
-/// Position and covariance in N of the axes, and how far its distribution is from the body.
+/// Holds position and covariance in N of the axes, and the distance of the distribution from the body.
 template <int N>
 struct Candidate {
   Eigen::Matrix<double, N, 1> mean = Eigen::Matrix<double, N, 1>::Zero();
@@ -18,7 +18,7 @@ struct Candidate {
   double sigmas = 2.0 * kBeyondSigmas;  ///< from the mean to the sphere, along the line to its centre
 };
 
-/// The few samples nearest to the body in standard deviations.
+/// Keeps the few samples nearest to the body in standard deviations.
 template <int N>
 class Nearest {
  public:
@@ -34,7 +34,7 @@ class Nearest {
     candidates_[place] = {mean, covariance, sigmas};
   }
 
-  /// Largest `probability(mean, covariance)` of them.
+  /// Returns the largest `probability(mean, covariance)` of these samples.
   template <class Probability>
   Result<double> largest(const Probability& probability) const {
     double largest = 0.0;

@@ -14,11 +14,11 @@
 
 namespace vbar::fsw::safety {
 
-/// What a drift may differ by from the estimated one.
+/// Holds the difference of a drift from the estimated one.
 struct DriftError {
-  double a_da_m = 0.0;             ///< of the relative semi-major axis, m
+  double a_da_m = 0.0;             ///< error of the relative semi-major axis, m
   double differential_drag = 0.0;  ///< m/s^2, acceleration of the target along its flight less the servicer's
-  double acted_for = 0.0;          ///< s, for which both have acted before the drift begins
+  double acted_for = 0.0;          ///< s, time for which both have acted before the drift begins
 };
 
 /// Position of the target in the servicer's RTN is `map * a_roe`, a_roe in m.
@@ -29,29 +29,29 @@ class LinearDrift {
   static constexpr int kSamplesPerRevolution = 36;
   static constexpr int kMaxRevolutions = 40;
 
-  /// Of no duration.
+  /// Makes a drift of no duration.
   LinearDrift() = default;
 
-  /// Drifts that begin with these mean elements of the servicer and last `horizon` s. kNotFinite; kOutOfRange for more
-  /// than kMaxRevolutions or elements that are not an orbit.
+  /// Makes the drifts that begin with these mean elements of the servicer and last `horizon` s. kNotFinite; kOutOfRange
+  /// for more than kMaxRevolutions or elements that are not an orbit.
   static Result<LinearDrift> make(const orbit::QnsElements& servicer_mean, double horizon);
 
-  /// Least distance, m, of the drift from mean ROE times a, m. A drift that comes closer than `enough_m` is not
-  /// followed further: its result is then some distance below that.
+  /// Returns the minimum distance, m, of the drift from mean ROE times a, m. The evaluation ends at the first distance
+  /// below `enough_m`, which is then the result.
   [[nodiscard]] double min_distance(const Vector6& a_roe_m, const DriftError& error = {}, double enough_m = 0.0) const;
 
-  /// Samples of all drifts, equally spaced from 0 to the horizon.
+  /// Returns the number of samples of every drift, equally spaced from 0 to the horizon.
   [[nodiscard]] int samples() const { return samples_; }
   [[nodiscard]] double time_s(int sample) const { return sample * step_s_; }
-  /// From the ROE at the start to the position at a sample.
+  /// Returns the map from the ROE at the start to the position at a sample.
   [[nodiscard]] PositionMap map_at(int sample) const;
 
  private:
-  Matrix6 rate_ = Matrix6::Zero();  ///< of the ROE, 1/s
+  Matrix6 rate_ = Matrix6::Zero();  ///< rate of the ROE, 1/s
   double mean_motion_ = 0.0;        ///< rad/s
   double step_s_ = 0.0;
   int samples_ = 0;
-  // Of the argument of latitude at samples 0 ... kSamplesPerRevolution - 1, which repeat.
+  // Cosine and sine of the argument of latitude at samples 0 ... kSamplesPerRevolution - 1, which repeat.
   std::array<double, kSamplesPerRevolution> cos_u_{};
   std::array<double, kSamplesPerRevolution> sin_u_{};
 };

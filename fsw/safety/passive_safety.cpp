@@ -20,8 +20,8 @@ bool within_model(const Vector6& roe) {
   return true;
 }
 
-/// Position of the target in the servicer's RTN during a drift. The ROE change linearly from their values at the start
-/// to those at the end: all but the slow rotation of the e-vector is linear in time.
+/// Returns the position of the target in the servicer's RTN during a drift. The ROE change linearly from their values
+/// at the start to those at the end: all but the slow rotation of the e-vector is linear in time.
 class DriftPath {
  public:
   DriftPath(const QnsElements& servicer, const Vector6& roe, const Vector6& roe_end, double duration)
@@ -51,7 +51,7 @@ class DriftPath {
   Vector6 roe_rate_;
 };
 
-/// Squared distances, reduced by PositionBound.
+/// Holds squared distances, reduced by PositionBound.
 struct Clearance {
   double spatial_squared;
   double radial_normal_squared;
@@ -69,13 +69,13 @@ Clearance clearance(const DriftPath& path, double t, const PositionBound& bound)
           .radial_normal_squared = radial_normal * radial_normal};
 }
 
-/// Minimum of a function sampled at equal steps. Holds the last three samples and requests one more where they are
-/// convex.
+/// Finds the minimum of a function sampled at equal steps. It holds the last three samples and requests one more where
+/// they are convex.
 class Minimum {
  public:
   explicit Minimum(double step) : step_(step) {}
 
-  /// Adds the sample at `t`. True if a minimum was passed; then `vertex()` is its estimated time.
+  /// Adds the sample at `t`. Returns true if a minimum was passed; `vertex()` is then its estimated time.
   bool add(double t, double squared) {
     note(t, squared);
     before_ = previous_;
@@ -127,13 +127,13 @@ DriftSafety watch(const DriftPath& path, double duration, int samples, const Pos
   return {.spatial = spatial.closest(), .radial_normal = radial_normal.closest()};
 }
 
-/// A situation after some burns of a plan.
+/// Describes the situation after some burns of a plan.
 struct Prefix {
   QnsElements servicer;
   QnsElements target;
   GpsTime time;
   PositionBound bound;
-  Matrix6 covariance_m2 = Matrix6::Zero();  ///< of the mean ROE times a
+  Matrix6 covariance_m2 = Matrix6::Zero();  ///< covariance of the mean ROE times a
 
   /// Drifts to the burn and executes it, as the control matrix states its effect in terms of ROE.
   void execute(const control::Burn& burn, const BurnUncertainty& uncertainty) {
@@ -149,8 +149,8 @@ struct Prefix {
     const Matrix63 a_control = servicer.a * control;
     covariance_m2 =
         transition * covariance_m2 * transition.transpose() + sigma * sigma * a_control * a_control.transpose();
-    // Bounds of three sigma, as those of the caller: an impulse v moves the orbit by at most 2 v / n, and its drift
-    // along track by 3 v.
+    // The bounds are three sigma, as those of the caller. An impulse v moves the orbit by at most 2 v / n, and its
+    // drift along track by 3 v.
     const double bound_mps = 3.0 * sigma;
     bound.along_track += bound.along_track_rate * dt;
     bound.along_track_rate = math::hypot(bound.along_track_rate, 3.0 * bound_mps);
@@ -164,7 +164,7 @@ struct RetreatOutlook {
   double probability = 0.0;
 };
 
-/// The errors of a retreat grow with the uncertainty of the prefix.
+/// Assesses the retreat after a prefix. Its errors grow with the uncertainty of the prefix.
 Result<RetreatOutlook> assess_retreat(const Prefix& prefix, const RetreatCriterion& criterion) {
   RetreatSettings settings = criterion.settings;
   const double a_da_bound_m = 3.0 * math::sqrt(prefix.covariance_m2(0, 0));
@@ -218,8 +218,8 @@ Result<DriftSafety> assess_drift(const QnsElements& servicer_mean, const Vector6
 
 namespace {
 
-/// With a retreat the present drift is judged for itself, and left if it is unsafe: it does not stand in the way of a
-/// plan whose burns leave it. Until the first of them, and a retreat in its place, it must keep the distance.
+/// Judges the present drift. With a retreat criterion an unsafe drift does not exclude a plan whose burns leave it, but
+/// until the first of them, or a retreat in its place, the drift must keep the distance.
 double watched_s(const SafetyCriterion& criterion, std::size_t prefix, bool more, double until_next_s) {
   if (prefix == 0 && more && criterion.retreat) return until_next_s + criterion.retreat->delay;
   return until_next_s > criterion.horizon ? until_next_s : criterion.horizon;

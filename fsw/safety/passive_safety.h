@@ -18,53 +18,54 @@
 
 namespace vbar::fsw::safety {
 
-/// Minimum distance, m, in the plane perpendicular to the flight direction over a revolution, from the dimensionless
-/// ROE's eccentricity and inclination vectors alone (da = 0; otherwise the bound is this less a |da|). `a` in m.
-/// D'Amico 2010, eq. 2.22.
+/// Returns the minimum distance, m, in the plane perpendicular to the flight direction over a revolution, from the
+/// dimensionless eccentricity and inclination vectors of the ROE (da = 0; otherwise the bound is this less a |da|). `a`
+/// in m. D'Amico 2010, eq. 2.22.
 double eccentricity_inclination_separation(const Vector6& roe, double a);
 
-/// Uncertainty of the relative position: bounds, not sigmas, so that the caller chooses the confidence. All m, >= 0.
+/// Holds the uncertainty of the relative position as bounds, not sigmas: the caller chooses the confidence. All m, >=
+/// 0.
 struct PositionBound {
-  double radial_normal = 0.0;     ///< of the position in the RN plane
-  double along_track = 0.0;       ///< of the T coordinate at the start
+  double radial_normal = 0.0;     ///< bound of the position in the RN plane
+  double along_track = 0.0;       ///< bound of the T coordinate at the start
   double along_track_rate = 0.0;  ///< its growth, m/s: 1.5 n times the bound of a da
 };
 
-/// A minimum distance and when it occurs, s after the start.
+/// Holds a minimum distance and its time, s after the start.
 struct Closest {
   double distance = 0.0;
   double time = 0.0;
 };
 
-/// Minimum distances of a free drift, reduced by `PositionBound`, never below zero.
+/// Holds the minimum distances of a free drift, reduced by `PositionBound`, never below zero.
 struct DriftSafety {
-  /// In space. At each time the guaranteed separations in the RN plane and along track are combined, so that with an
-  /// unknown along-track position the RN distance remains.
+  /// Minimum distance in space. At each time the guaranteed separations in the RN plane and along track are combined,
+  /// so that with an unknown along-track position the RN distance remains.
   Closest spatial;
   Closest radial_normal;  ///< in the RN plane only
 };
 
-/// Free drift over `horizon` s (>= 0) from mean elements of the servicer and dimensionless mean ROE of the target.
-/// Sampled a hundred times a revolution, minima refined by a parabola. kNotFinite; kOutOfRange for a horizon over 40
-/// revolutions, ROE over 0.5 or elements outside the mean-element theory.
+/// Assesses the free drift over `horizon` s (>= 0) from mean elements of the servicer and dimensionless mean ROE of the
+/// target. It is sampled a hundred times a revolution, and minima are refined by a parabola. kNotFinite; kOutOfRange
+/// for a horizon over 40 revolutions, ROE over 0.5 or elements outside the mean-element theory.
 Result<DriftSafety> assess_drift(const orbit::QnsElements& servicer_mean, const Vector6& mean_roe, double horizon,
                                  const PositionBound& bound = {});
 
-/// Uncertainty of a burn of the servicer, each axis, 1 sigma.
+/// Holds the uncertainty of a burn of the servicer, each axis, 1 sigma.
 struct BurnUncertainty {
   double sigma_mps = 0.0;
-  double sigma_relative = 0.0;  ///< of its size
+  double sigma_relative = 0.0;  ///< share of its size
 };
 
-/// A plan must also allow a retreat after every burn.
+/// Requires that a plan allows a retreat after every burn.
 struct RetreatCriterion {
   RetreatSettings settings;
   double delay = 0.0;                          ///< s until the retreat burn, from now and from each burn
-  Matrix6 covariance_m2 = Matrix6::Zero();     ///< of the mean ROE times a at the start
+  Matrix6 covariance_m2 = Matrix6::Zero();     ///< covariance of the mean ROE times a at the start
   double maximum_collision_probability = 1.0;  ///< after the retreat burn, over the horizon
 };
 
-/// Criteria of a plan.
+/// Holds the criteria of a plan.
 struct SafetyCriterion {
   double keep_out_radius = 0.0;  ///< m
   double horizon = 0.0;          ///< s, how long each drift is evaluated
@@ -73,14 +74,14 @@ struct SafetyCriterion {
   std::optional<RetreatCriterion> retreat{};
 };
 
-/// The worst drift of a plan. Prefix k: the first k burns are executed, the others are missed.
+/// Describes the worst drift of a plan. In prefix k the first k burns are executed and the others missed.
 struct PlanSafety {
   bool safe = false;             ///< min_distance reaches the keep-out radius, and a retreat is possible throughout
   double min_distance = 0.0;     ///< m, in space, bound subtracted, over all prefixes
   double min_rn_distance = 0.0;  ///< m, in the RN plane, bound subtracted, over all prefixes
-  double time = 0.0;             ///< s after `start`, of min_distance
-  std::size_t prefix = 0;        ///< with which it occurs
-  /// With a RetreatCriterion: whether it holds after all prefixes, and the worst of them.
+  double time = 0.0;             ///< s after `start`, time of min_distance
+  std::size_t prefix = 0;        ///< prefix of min_distance
+  /// States, with a RetreatCriterion, whether it holds after all prefixes; the worst values follow.
   bool allows_retreat = true;
   double retreat_distance = 0.0;       ///< m
   double collision_probability = 0.0;  ///< after the retreat burn

@@ -25,17 +25,17 @@ struct Menu {
   std::array<std::uint16_t, kMenuSize> order;
 };
 
-/// Along-track impulse of the servicer that leaves the given a da, m.
+/// Returns the along-track impulse of the servicer that leaves the given a da, m.
 double along_track_impulse(double n, double a_da_m, double a_da_after_m) {
   return 0.5 * n * (a_da_m - a_da_after_m);
 }
 
-/// Sign of the along-track position; a target beside the servicer counts as ahead.
+/// Returns the sign of the along-track position; a target beside the servicer counts as ahead.
 double side_of(const Vector6& a_roe_m) {
   return a_roe_m(1) < 0.0 ? -1.0 : 1.0;
 }
 
-/// All burns, in order of size.
+/// Fills the menu with all burns and their order of size.
 void fill(Menu& menu, double n, const Vector6& a_roe_m) {
   std::size_t count = 0;
   for (const double recession : kRecessions_m) {
@@ -57,7 +57,8 @@ void fill(Menu& menu, double n, const Vector6& a_roe_m) {
   }
 }
 
-/// Least distance after a burn with every combination of the errors; any value below `enough` if it is.
+/// Finds the minimum distance after a burn with every combination of the errors; any value below `enough` if the
+/// minimum is below it.
 class Judge {
  public:
   Judge(const LinearDrift& drift, const Matrix63& a_control, const Vector6& a_roe_m, const RetreatSettings& settings)

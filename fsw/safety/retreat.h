@@ -16,43 +16,45 @@
 namespace vbar::fsw::safety {
 
 struct RetreatSettings {
-  double contact_distance = 2.0;    ///< m, to be kept for the horizon,
-  double margin = 0.0;              ///< m, and this more: uncertainty of the position
+  double contact_distance = 2.0;    ///< m, distance to be kept for the horizon
+  double margin = 0.0;              ///< m, to be kept in addition: uncertainty of the position
   double horizon = 86400.0;         ///< s
   double recession = 1.0;           ///< m
-  double a_da_error_m = 0.05;       ///< error of a da, either sign, together with
-  double differential_drag = 1e-9;  ///< m/s^2, either sign
-  double unmeasured = 0.0;          ///< s before the burn without a measurement of the target: the errors have acted
+  double a_da_error_m = 0.05;       ///< error of a da, either sign
+  double differential_drag = 1e-9;  ///< m/s^2, either sign, together with that error
+  double unmeasured = 0.0;          ///< s before the burn without a measurement of the target, in which the errors act
 };
 
-/// Numbers of telemetry_safety.choice.
+/// Choices, with the numbers of telemetry_safety.choice.
 enum class RetreatChoice : std::int8_t { kNone = 0, kReceding = 1, kMenu = 2 };
 
 struct RetreatBurn {
   Vector3 dv_rtn = Vector3::Zero();  ///< of the servicer, m/s
-  double distance = 0.0;             ///< m, least over the horizon and all errors
+  double distance = 0.0;             ///< m, minimum over the horizon and all errors
   RetreatChoice choice = RetreatChoice::kNone;
   bool keeps_distance = false;  ///< `distance` reaches contact_distance + margin
 };
 
-/// The burn flown at the instant at which the mean elements of the servicer and the mean ROE of the target times a (m)
-/// hold: the receding one if it keeps the distance, or else the smallest of the menu that does, or else the receding
-/// one without keeps_distance. Errors of LinearDrift::make.
+/// Returns the retreat burn at the instant at which the mean elements of the servicer and the mean ROE of the target
+/// times a (m) hold: the receding burn if it keeps the distance, else the smallest one of the menu that does, else the
+/// receding burn without keeps_distance. Errors of LinearDrift::make.
 Result<RetreatBurn> find_retreat(const orbit::QnsElements& servicer_mean, const Vector6& a_roe_m,
                                  const RetreatSettings& settings);
 
-/// A retreat burn and the situation in which it is flown.
+/// Holds a retreat burn and the situation in which it is flown.
 struct DelayedRetreat {
   RetreatBurn burn;
   orbit::QnsElements servicer_mean;   ///< at the burn
   Vector6 a_roe_m = Vector6::Zero();  ///< before it
 };
 
-/// The same after a drift of `delay` s (>= 0) from these elements, of which the least distance is contained.
+/// Returns the retreat burn after a drift of `delay` s (>= 0) from these elements. Its distance includes the minimum
+/// during that drift.
 Result<DelayedRetreat> find_delayed_retreat(const orbit::QnsElements& servicer_mean, const Vector6& a_roe_m,
                                             double delay, const RetreatSettings& settings);
 
-/// Probability of collision over the horizon after the burn; `covariance_m2` of the mean ROE times a at the burn.
+/// Returns the probability of collision over the horizon after the burn; `covariance_m2` is that of the mean ROE times
+/// a at the burn.
 Result<DriftProbability> retreat_probability(const DelayedRetreat& retreat, const Matrix6& covariance_m2,
                                              const RetreatSettings& settings);
 
