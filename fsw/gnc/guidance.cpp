@@ -93,7 +93,7 @@ void Guidance::assess(GpsTime now, const NavigationSolution& navigation, const f
   } else {
     safety_.reset();
   }
-  const filter::RelativeNavigationFilterSettings& settings = filter.settings();
+  const filter::FilterSettings& settings = filter.settings();
   burn_uncertainty_ =
       safety_ ? safety::BurnUncertainty{settings.burn_sigma, settings.burn_sigma_relative} : safety::BurnUncertainty{};
   earliest_burn_ = now + Duration{configuration.compute_latency_ns};
