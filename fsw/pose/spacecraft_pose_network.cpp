@@ -83,19 +83,19 @@ SightingStatus SpacecraftPoseNetwork::look_at(const imaging::ImageView& image, c
   if (!is_any) return SightingStatus::kNoKeypoints;
   const Result<PnpSolution> solution = solve_pnp(sighting_.keypoints, settings_.shape, settings_.model, settings_.pnp,
                                                  static_cast<std::uint32_t>(sighting_.image));
-  if (!solution.ok()) return SightingStatus::kKeypoints;
+  if (!solution.ok()) return SightingStatus::kKeypointsOnly;
   sighting_.pnp = solution.value();
   return SightingStatus::kPose;
 }
 
 SightingStatus SpacecraftPoseNetwork::look_twice(const imaging::ImageView& image) {
   const SightingStatus first = look_at(image, finder_.region());
-  if (first != SightingStatus::kPose && first != SightingStatus::kKeypoints) return first;
+  if (first != SightingStatus::kPose && first != SightingStatus::kKeypointsOnly) return first;
   const std::optional<PnpSolution> before = sighting_.pnp;
   const SightingStatus second = look_at(image, second_region());
   if (second == SightingStatus::kPose && before.has_value() && !agree(before->pose, sighting_.pnp->pose)) {
     sighting_.pnp.reset();
-    return SightingStatus::kKeypoints;
+    return SightingStatus::kKeypointsOnly;
   }
   return second;
 }

@@ -29,7 +29,7 @@ struct PoseCameraSettings {
 
 enum class SightingStatus : std::uint8_t {
   kPose = 0,     ///< keypoints and a pose
-  kKeypoints,    ///< keypoints (at least one usable), but no consistent pose
+  kKeypointsOnly,   ///< keypoints (at least one usable), but no consistent pose
   kNoKeypoints,  ///< no keypoint detected
   kNoTarget,     ///< no object in the image can be the target
   kDark,         ///< no light but noise

@@ -141,7 +141,7 @@ void KeypointSource::process_record(const Record& record, Context& context, filt
   network_.configure(settings.network);
   const pose::PoseSighting& sighting =
       network_.process(record.time, frame.image_number(), frame.view(), predicted_position_camera(image, filter));
-  if (sighting.status <= pose::SightingStatus::kKeypoints) {
+  if (sighting.status <= pose::SightingStatus::kKeypointsOnly) {
     remember_direction(settings, image.R_camera_eci, filter);
     keypoints_ = widened(sighting.keypoints, settings);
     image.keypoints = &keypoints_;
