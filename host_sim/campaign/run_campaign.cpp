@@ -77,7 +77,7 @@ std::vector<Case> cases_to_fly(const RunRequest& request, const Standing& standi
   return left;
 }
 
-/// How the campaign stands with the results of this worker.
+/// Progress of the campaign with the results of this worker.
 class LocalProgress {
  public:
   LocalProgress(const Standing& standing, std::size_t to_fly, bool quiet)
@@ -149,8 +149,8 @@ void submit(const RunRequest& request, const Engine& engine, const Folder& folde
   std::fflush(stdout);
 }
 
-/// Until no worker waits or runs. A worker that was submitted by a command may be late: it has begun when it holds a
-/// lock, and is missed only after all cases have been waited for.
+/// Waits until no worker waits or runs. A worker that was submitted by a command may be late: it has started when it
+/// holds a lock, and counts as missing only after all cases have been waited for.
 void wait_for_workers(const RunRequest& request, const Engine& engine, const Folder& folder, std::size_t to_fly) {
   constexpr std::chrono::seconds kPeriod{1};
   constexpr int kPatience = 30;  // periods without a job and without a worker
