@@ -169,7 +169,7 @@ std::vector<io::FileDescriptor> only(io::FileDescriptor descriptor) {
   return list;
 }
 
-/// Where the build and the installation put an image, relative to the folder of the running program, and the CMake
+/// Places of an image in the build and the installation, relative to the folder of the running program, and the CMake
 /// preset that builds it.
 struct BuiltImage {
   const char* built;

@@ -18,7 +18,7 @@ std::vector<std::string> zynq_machine(const std::string& elf, int icount_shift) 
           "-semihosting-config", "enable=on,target=native", "-chardev", "stdio,id=console,signal=off", "-kernel", elf};
 }
 
-/// As the value of an option: QEMU writes a comma twice.
+/// Returns the text as the value of an option: QEMU writes a comma twice.
 std::string option_value(const std::string& text) {
   std::string value;
   for (const char c : text) value += c == ',' ? ",," : std::string(1, c);

@@ -17,7 +17,7 @@ constexpr double kBitsPerByte = 10.0;  // 8N1
 
 /// A process whose line broke is about to end: time to obtain its exit status before it is terminated.
 constexpr std::chrono::milliseconds kExplainPatience{300};
-/// After a goodbye, to end by itself; then after a SIGTERM.
+/// Wait for the process to end after a goodbye; then after a SIGTERM.
 constexpr std::chrono::milliseconds kGoodbyePatience{2000};
 constexpr std::chrono::milliseconds kTerminatePatience{500};
 

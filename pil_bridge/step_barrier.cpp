@@ -36,7 +36,7 @@ std::string seconds_text(std::chrono::milliseconds duration) {
   return text.substr(0, text.find('.') + 2) + " s";
 }
 
-/// What a line gave instead of an answer: a cable, an address and a rate that are wrong look different.
+/// Describes what a line gave instead of an answer: a wrong cable, address and rate differ in it.
 std::string what_came(const TransportCounters& line, std::uint64_t other_frames) {
   if (line.foreign_datagrams > 0)
     return "; " + std::to_string(line.foreign_datagrams) + " datagrams came from another address";

@@ -10,7 +10,7 @@
 namespace vbar::pil {
 namespace {
 
-/// After which an unanswered question is repeated: question or answer was lost on the link.
+/// Time after which an unanswered question is repeated: question or answer was lost on the link.
 constexpr std::chrono::milliseconds kAnswerLimit{100};
 /// Between two questions: an emulated board needs the time to receive.
 constexpr std::chrono::microseconds kBetweenQuestions{500};

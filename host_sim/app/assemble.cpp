@@ -88,7 +88,7 @@ std::unique_ptr<testbeds::TestbedTruth> truth_of_testbed(const mission::Mission&
                            model.model().data().earth_orientation});
 }
 
-/// What a run shows, for the record.
+/// Enters the events of a run into its record.
 class Recording final : public RunObserver {
  public:
   Recording(const mission::Mission& mission, const mission::Spacecraft& servicer, report::RunRecord& record)
@@ -160,7 +160,7 @@ class Recording final : public RunObserver {
   report::RunRecord& record_;
 };
 
-/// What the line to the flight computer carries.
+/// Counts the bytes of the line to the flight computer.
 class LineWatch final : public RunObserver {
  public:
   LineWatch(const mission::Mission& mission, const mission::Spacecraft& servicer, const pil::FlightComputer& computer)

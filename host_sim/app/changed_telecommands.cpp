@@ -14,7 +14,7 @@ namespace {
 using fsw::packets::Apid;
 using fsw::packets::PacketView;
 
-/// What the flight software takes up in any step; the others initialise it.
+/// Telecommands that the flight software accepts in any step; the others initialise it.
 constexpr std::array kInFlight{Apid::kGncConfiguration, Apid::kWaypointTable, Apid::kModeCommand,
                                Apid::kSafetyConfiguration};
 

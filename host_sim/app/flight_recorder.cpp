@@ -32,7 +32,7 @@ report::Sextuple sextuple(const double (&v)[6]) {
   return {v[0], v[1], v[2], v[3], v[4], v[5]};
 }
 
-/// What navigation does not know is empty in the table.
+/// Clears the state: values that navigation does not have are empty in the table.
 void forget_state(report::EstimateRow& row) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   row.relative_position_rtn.fill(kUnknown);
@@ -155,7 +155,7 @@ void FlightRecorder::on_any_telemetry(double step_time_s, const fsw::packets::Pa
   std::apply([&](auto&... rows) { (record(rows), ...); }, record_.telemetry);
 }
 
-/// What makes the row of the step.
+/// Fills the row of the step.
 void FlightRecorder::on_telemetry(report::EstimateRow& row, const fsw::packets::PacketView& packet) {
   if (const auto navigation = fsw::packets::decode<telemetry_navigation>(packet); navigation.ok()) {
     const telemetry_navigation& m = navigation.value();

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Nothing if it cannot be read. A resume needs it twice, and it takes a tenth of a second.
+/// Returns an empty value if the program cannot be read. A resume needs it twice, and it takes a tenth of a second.
 const std::optional<std::string>& program_sha256() {
   static const std::optional<std::string> sha256 = files::sha256_of_file(files::own_program_bytes());
   return sha256;

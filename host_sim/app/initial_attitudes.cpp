@@ -8,7 +8,7 @@
 namespace vbar::app {
 namespace {
 
-/// From what a mission file says of one spacecraft's attitude to what the truth takes.
+/// Converts the attitude of one spacecraft from the mission file to the settings of the truth.
 struct SettingsOf {
   const mission::Mission& mission;
   const mission::Spacecraft& spacecraft;

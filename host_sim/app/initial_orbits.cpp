@@ -36,8 +36,8 @@ CartesianState state_at_epoch(const mission::OrbitByElements& orbit, const missi
   return value_or_throw(fsw::orbit::cartesian_from_qns(orbit.elements), spacecraft);
 }
 
-/// To GCRF from the Earth-fixed frame. The rate of the rotation by a central difference: over 0.1 s it is good to 1e-8
-/// m/s in a low orbit.
+/// Converts to GCRF from the Earth-fixed frame. The rate of the rotation is a central difference: over 0.1 s it is good
+/// to 1e-8 m/s in a low orbit.
 CartesianState gcrf_from_itrf(const CartesianState& itrf, const truth::TruthModel& truth, fsw::GpsTime time) {
   constexpr double kHalf_s = 0.1;
   truth::EarthRotation rotation(truth.data().earth_orientation, time);
@@ -87,7 +87,7 @@ CartesianState state_about(const mission::Mission& mission, const mission::Orbit
   return state_of(fsw::orbit::qns_from_roe(chief_mean, roe), spacecraft);
 }
 
-/// With the true mass.
+/// Returns the surface properties with the true mass.
 truth::SurfaceProperties true_surface(const mission::Mission& mission, const mission::Spacecraft& spacecraft) {
   truth::SurfaceProperties surface = spacecraft.surface;
   surface.mass_kg += mission::drawn_mass_error_kg(mission.seed, spacecraft.name, spacecraft.mass_sigma_kg);

@@ -61,8 +61,8 @@ void add_resume(CLI::App& command, ResumeOptions& resume) {
 constexpr const char* kOtherProgramsHelp =
     "vbar NAME runs the program vbar_NAME beside it with the arguments after NAME, e.g. vbar tron plan.";
 
-/// For a first word that is not a command: runs the program of that name, which replaces this one. Otherwise a message;
-/// empty if the word is a command, or an option.
+/// Runs the program of the name of a first word that is not a command; it replaces this one. Returns a message if there
+/// is no such program; empty if the word is a command, or an option.
 std::string unknown_command(const CLI::App& program, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return {};
   std::vector<std::string_view> names;

@@ -11,7 +11,7 @@
 namespace vbar::app {
 namespace {
 
-/// As the flight software has it: a waypoint that states no radius, or zero, has that of guidance.
+/// Returns the radius that the flight software uses: a waypoint without a radius, or with zero, has that of guidance.
 double keep_out_of(const mission::Waypoint& waypoint, const mission::Guidance& guidance) {
   const double own_m = waypoint.keep_out_radius_m.value_or(0.0);
   return own_m > 0.0 ? own_m : guidance.configuration.keep_out_radius_m;

@@ -2,31 +2,44 @@
 // One line that says how far a run is: on a terminal, and silent in a pipe.
 
 #include <chrono>
+#include <string>
 
 #include "fsw/core/gps_time.h"
 
 namespace vbar::app {
 
+/// A line of text on a terminal, which each text replaces and the end erases.
+class StatusLine {
+ public:
+  explicit StatusLine(bool quiet);
+  ~StatusLine();
+  StatusLine(const StatusLine&) = delete;
+  StatusLine& operator=(const StatusLine&) = delete;
+
+  /// Returns whether anything is drawn: not in a pipe, nor if it is quiet.
+  [[nodiscard]] bool is_drawn() const { return on_terminal_; }
+  void draw(const std::string& text);
+
+ private:
+  bool on_terminal_;
+  bool visible_ = false;
+};
+
 class ProgressLine {
  public:
   /// Draws the line of a run that simulates `total`; `quiet` draws nothing.
   ProgressLine(fsw::Duration total, bool quiet);
-  ~ProgressLine();
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
 
   /// Redraws the line at most five times a second.
   void update(fsw::Duration simulated);
 
  private:
   using Clock = std::chrono::steady_clock;
-  void erase();
 
   fsw::Duration total_;
   Clock::time_point started_;
   Clock::time_point drawn_;
-  bool on_terminal_;
-  bool visible_ = false;
+  StatusLine line_;
 };
 
 }  // namespace vbar::app

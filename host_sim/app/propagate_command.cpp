@@ -20,7 +20,7 @@
 namespace vbar::app {
 namespace {
 
-/// By this computer's clock, to a second.
+/// Returns the time of this computer's clock, to a second.
 fsw::GpsTime now() {
   const std::time_t seconds = std::time(nullptr);
   std::tm utc{};

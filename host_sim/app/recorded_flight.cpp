@@ -27,7 +27,7 @@ namespace {
 
 using report::RunFolder;
 
-/// What is known before the first step.
+/// Returns the part of the summary that is known before the first step.
 report::Summary start_of(const mission::Mission& mission) {
   report::Summary summary;
   summary.mission = mission.name;
@@ -99,7 +99,7 @@ void report_rejections(const report::Summary& summary) {
                  source.packets_rejected);
 }
 
-/// What the line to the flight computer cannot carry in time: what is known before the flight, and what it was.
+/// Prints what the line to the flight computer cannot carry in time, as known before the flight and as measured.
 void report_line(const std::string& slow_line) {
   if (!slow_line.empty()) fmt::print("link: {}\n", slow_line);
 }

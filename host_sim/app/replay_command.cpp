@@ -53,7 +53,8 @@ std::vector<pil::Packet> packets_of(const std::vector<twins::PacketRecord>& reco
   return packets;
 }
 
-/// Where two answers part, or nothing. `cut`: the recorded one may lack packets at its end.
+/// Returns the first difference of two answers, empty if there is none. `cut`: the recorded one may lack packets at its
+/// end.
 std::optional<std::string> difference(const std::vector<pil::Packet>& recorded, const std::vector<pil::Packet>& now,
                                       bool cut) {
   for (std::size_t k = 0; k < std::min(recorded.size(), now.size()); ++k) {
@@ -78,7 +79,7 @@ struct Compared {
   }
 };
 
-/// Without the packets in which a restart is reported.
+/// Removes the packets in which a restart is reported.
 std::vector<pil::Packet> without_health(std::vector<pil::Packet> packets) {
   std::erase_if(packets, [](const pil::Packet& bytes) {
     const auto packet = fsw::packets::parse_packet(bytes);

@@ -83,7 +83,7 @@ std::string text_of(const BranchPoint& point) {
   return fmt::format("at_h = {}\noverrides = {}\n", point.at_h, point.changes);
 }
 
-/// Nothing if the run is no branch.
+/// Returns an empty value if the run is not a branch.
 std::optional<BranchPoint> branch_point(const FlownRun& run) {
   const fs::path file = run.folder / kBranchCopy;
   if (!fs::exists(file)) return std::nullopt;
@@ -132,7 +132,7 @@ class Comparison {
  public:
   Comparison(const FlownRun& run, twins::FlownLog& log, bool quiet) : run_(run), log_(log), quiet_(quiet) {}
 
-  /// For twins::EventCheck.
+  /// Is the twins::EventCheck of the log.
   void operator()(fsw::GpsTime time, const twins::LcmEvent& event) {
     if (log_.is_over()) return;
     try {
@@ -148,7 +148,7 @@ class Comparison {
     if (log_.is_over() && !quiet_) announce_end(time);
   }
 
-  /// Why the flight cannot take the place of the log, after it ended for the reason `trouble`; nothing if it can.
+  /// Returns why the flight cannot replace the log, after it ended for the reason `trouble`; empty if it can.
   [[nodiscard]] std::optional<Verdict> verdict(const std::optional<std::string>& trouble) const {
     if (verdict_) return verdict_;
     if (log_.is_over()) return std::nullopt;

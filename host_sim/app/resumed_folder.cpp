@@ -83,7 +83,7 @@ std::uint64_t events_in(const fs::path& folder) {
   }
 }
 
-/// Where the run that was replaced is now.
+/// Exchanges the folders and returns the place of the run that was replaced.
 fs::path exchange(const fs::path& run_folder, const fs::path& next) {
   if (::renameat2(AT_FDCWD, next.c_str(), AT_FDCWD, run_folder.c_str(), RENAME_EXCHANGE) == 0) return next;
   if (errno != EINVAL && errno != ENOSYS) fail(run_folder, "cannot be replaced", errno);

@@ -77,7 +77,7 @@ void Simulation::fly() {
   }
 }
 
-/// False if the run shall stop.
+/// Returns false if the run shall stop.
 bool Simulation::wait_until_due(const Event& event) {
   const GpsTime now = events_.now();
   if (std::holds_alternative<StepFlight>(event)) return clock_.begin_step(now, world_.stop_requested);
@@ -194,7 +194,7 @@ bool Simulation::wait_for(const CollectPending& pending) {
   return true;
 }
 
-/// Before its packets are passed on: an observer that cannot keep the image ends the run.
+/// Records an image before its packets are passed on: an observer that cannot keep it ends the run.
 void Simulation::record(GpsTime time, const std::optional<twins::LoggedImage>& recording) {
   if (!recording) return;
   for (RunObserver* observer : world_.observers) observer->on_recording(time, *recording);

@@ -33,7 +33,7 @@ std::string name_of_point(const Row& keys, const Row& values) {
   return name;
 }
 
-/// For each seed the values of all dispersed keys.
+/// Returns for each seed the values of all dispersed keys.
 std::vector<Row> draws_of(const CampaignFile& campaign, const std::string& suffix) {
   std::vector<Row> rows(campaign.seeds.size());
   const DrawSource source(campaign.seed, campaign.sampling, campaign.seeds);

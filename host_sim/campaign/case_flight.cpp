@@ -105,7 +105,7 @@ CaseFlight::CaseFlight(const Request& request)
       child_(start(request, run_folder_)),
       started_(std::chrono::steady_clock::now()) {}
 
-/// What was not taken away is of no use.
+/// Ends the process, and removes a run folder that was not collected.
 CaseFlight::~CaseFlight() {
   child_->terminate(std::chrono::milliseconds(0));
   std::error_code ignored;

@@ -9,8 +9,8 @@
 
 #include "host_sim/app/connect_flight_computer.h"
 #include "host_sim/app/exit_codes.h"
+#include "host_sim/app/progress.h"
 #include "host_sim/campaign/copies.h"
-#include "host_sim/campaign/progress_line.h"
 #include "host_sim/files/data_stream.h"
 #include "host_sim/files/sha256.h"
 #include "host_sim/mission/catalogue.h"
@@ -80,7 +80,7 @@ UsedFiles load_all(const Plan& plan, const std::vector<Case>& cases, const fs::p
   used.mission = mission_file;
   const auto largest = std::ranges::max_element(cases, {}, &Case::seed);
   std::set<std::vector<std::string>> loaded;
-  ProgressLine line(quiet);
+  app::StatusLine line(quiet);
   auto drawn = std::chrono::steady_clock::now();
   for (const Case& one : cases) {
     if (!loaded.insert(one.values).second && &one != &*largest) continue;

@@ -11,12 +11,12 @@
 #include <fmt/format.h>
 
 #include "host_sim/app/exit_codes.h"
+#include "host_sim/app/progress.h"
 #include "host_sim/campaign/case_selection.h"
 #include "host_sim/campaign/collect.h"
 #include "host_sim/campaign/engine.h"
 #include "host_sim/campaign/kept_runs.h"
 #include "host_sim/campaign/prepare.h"
-#include "host_sim/campaign/progress_line.h"
 #include "host_sim/campaign/requirement.h"
 #include "host_sim/campaign/status.h"
 #include "host_sim/campaign/trust.h"
@@ -77,7 +77,20 @@ std::vector<Case> cases_to_fly(const RunRequest& request, const Standing& standi
   return left;
 }
 
-/// How the campaign stands with the results of this worker.
+/// Estimates the time that is left of work of which `done` of `all` took the time since the start; negative if unknown.
+class TimeLeft {
+ public:
+  [[nodiscard]] double seconds(std::size_t done, std::size_t all) const {
+    if (done == 0) return -1.0;
+    const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
+    return elapsed_s / static_cast<double>(done) * static_cast<double>(all - done);
+  }
+
+ private:
+  std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
+};
+
+/// Progress of the campaign with the results of this worker.
 class LocalProgress {
  public:
   LocalProgress(const Standing& standing, std::size_t to_fly, bool quiet)
@@ -104,7 +117,7 @@ class LocalProgress {
 
   Standing standing_;
   std::size_t to_fly_, counted_ = 0, passed_ = 0, failed_ = 0;
-  ProgressLine line_;
+  app::StatusLine line_;
   TimeLeft left_;
 };
 
@@ -149,13 +162,13 @@ void submit(const RunRequest& request, const Engine& engine, const Folder& folde
   std::fflush(stdout);
 }
 
-/// Until no worker waits or runs. A worker that was submitted by a command may be late: it has begun when it holds a
-/// lock, and is missed only after all cases have been waited for.
+/// Waits until no worker waits or runs. A worker that was submitted by a command may be late: it has started when it
+/// holds a lock, and counts as missing only after all cases have been waited for.
 void wait_for_workers(const RunRequest& request, const Engine& engine, const Folder& folder, std::size_t to_fly) {
   constexpr std::chrono::seconds kPeriod{1};
   constexpr int kPatience = 30;  // periods without a job and without a worker
   const bool lists_jobs = engine.name != "command";
-  ProgressLine line(request.quiet);
+  app::StatusLine line(request.quiet);
   const TimeLeft left;
   for (int idle = 0; idle < (lists_jobs ? 1 : kPatience);) {
     if (request.stop_requested()) {

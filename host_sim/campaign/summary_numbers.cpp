@@ -10,7 +10,7 @@
 namespace vbar::campaign {
 namespace {
 
-/// Not of the flight, but of this flight of it: by the wall clock, or of the program and the computer.
+/// Numbers of this execution rather than of the flight: by the wall clock, or of the program and the computer.
 constexpr std::array<std::string_view, 8> kLeftOut{"schema",     "seed",       "wall_s", "speed_factor",
                                                    "wall_share", "provenance", "link",   "deadlines"};
 constexpr std::array<std::string_view, 2> kLeftOutOfSources{"late", "latest_s"};

@@ -41,7 +41,7 @@ std::string census(const Campaign& campaign) {
   return text + ".</p>\n";
 }
 
-/// How many complete cases have which verdict; empty for results of an older version.
+/// Returns the number of complete cases with each verdict; empty for results of an older version.
 std::string verdicts(const Campaign& campaign) {
   std::map<report::Outcome, std::size_t> counts;
   for (const Case& one : campaign.cases)

@@ -33,7 +33,7 @@ class Results {
       if (!places_.emplace(names_[k], k).second) fail(fmt::format("column \"{}\" occurs twice", names_[k]));
   }
 
-  /// False behind the last line.
+  /// Returns false behind the last line.
   bool next() {
     if (++line_ >= lines_.size()) return false;
     if (!report::split_cells(lines_[line_], cells_)) fail("a quote is not closed");
@@ -49,7 +49,7 @@ class Results {
     return found->second;
   }
   [[nodiscard]] const std::string& cell(std::size_t place) const { return cells_[place]; }
-  /// Empty without that column.
+  /// Returns an empty text without that column.
   [[nodiscard]] std::string optional_cell(const std::string& column) const {
     const auto found = places_.find(column);
     return found == places_.end() ? std::string() : cells_[found->second];

@@ -106,7 +106,7 @@ std::string verdict_table(const std::vector<Judged>& all) {
                        rows);
 }
 
-/// Where the filter is not consistent.
+/// Returns the table of the epochs at which the filter is not consistent.
 std::string outside_table(const std::vector<Judged>& all) {
   constexpr std::size_t kMaxRows = 200;
   std::vector<std::vector<std::string>> rows;

@@ -1,4 +1,4 @@
-// How the figures of complete cases are distributed: percentiles with bounds, histograms and distribution functions.
+// Distributions of the figures of complete cases: percentiles with bounds, histograms and distribution functions.
 
 #include <algorithm>
 #include <array>

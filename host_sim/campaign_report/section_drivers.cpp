@@ -1,5 +1,5 @@
-// What drives the figures: rank correlations with the swept and dispersed quantities, and scatter plots of the
-// strongest.
+// Dependence of the figures on the inputs: rank correlations with the swept and dispersed quantities, and scatter plots
+// of the strongest.
 
 #include <algorithm>
 #include <set>

@@ -1,4 +1,4 @@
-// Why cases did not pass: failures by reason, limits that were broken, cases that show nothing.
+// Reasons of failure: failures by reason, limits that were broken, cases that show nothing.
 
 #include <algorithm>
 #include <cctype>

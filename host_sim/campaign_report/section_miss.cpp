@@ -1,4 +1,4 @@
-// How far errors with a direction scatter across the track: CEP, R95 and the ellipse of the covariance.
+// Scatter of errors with a direction across the track: CEP, R95 and the ellipse of the covariance.
 
 #include <array>
 #include <cmath>

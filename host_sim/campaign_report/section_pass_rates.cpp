@@ -1,4 +1,4 @@
-// How often the cases pass, with bounds: all of them, each limit, each point of the sweeps.
+// Pass rates with bounds: all cases, each limit, each point of the sweeps.
 
 #include <algorithm>
 #include <map>
@@ -63,7 +63,7 @@ void add_sweep_points(const Campaign& campaign, std::vector<Row>& rows) {
   }
 }
 
-/// What a reader has to know of the numbers.
+/// Explanation of the numbers for the reader.
 std::string notes(const Campaign& campaign) {
   std::string text =
       "<p class=\"note\">Rates are of the cases flown to an end: complete, failed or over time; the latter two have "

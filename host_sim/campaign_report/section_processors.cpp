@@ -1,4 +1,4 @@
-// What the campaign cost, and on which processors it was flown.
+// Cost of the campaign, and the processors on which it was flown.
 
 #include <algorithm>
 #include <cmath>

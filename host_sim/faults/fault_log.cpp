@@ -199,7 +199,7 @@ void FaultLog::look_for_reaction(State& state, GpsTime time) {
   if (has_reacted && now.fixed > 0) witness_end(state, time);
 }
 
-/// Nothing for more than two intervals.
+/// Detects that a stream has been silent for more than two intervals.
 void FaultLog::look_at_silence(State& state, GpsTime time) {
   const auto key = stream_of(mission_, state.fault);
   const auto stream = key ? streams_.find(*key) : streams_.end();

@@ -16,7 +16,7 @@ using fsw::gnss::ObservationEpoch;
 
 /// Lock times are sent in steps of a fraction of a second.
 constexpr double kLockTolerance_s = 1.0;
-/// Nothing is continued over a longer gap.
+/// Longest gap over which observations are continued.
 constexpr double kLongestGap_s = 15.0;
 constexpr std::size_t kPastSamples = 5;
 constexpr double kLongestPast_s = 70.0;

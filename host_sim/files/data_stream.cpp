@@ -29,7 +29,7 @@ Registry& registry() {
 
 thread_local int unrecorded_depth = 0;
 
-/// What `manifest` lists for `name`: lines of sha256sum, "digest  ./name" or "digest  name".
+/// Returns the digest that `manifest` lists for `name`: lines of sha256sum, "digest  ./name" or "digest  name".
 std::optional<std::string> listed_in(const fs::path& manifest, const std::string& name) {
   std::ifstream lines(manifest);
   for (std::string line; std::getline(lines, line);) {

@@ -61,7 +61,7 @@ bool arrange_descriptors(ExecPlan& plan) {
   return true;
 }
 
-/// What the copy of this process does that runs a function; standard output and error are its own by now.
+/// Runs a function in the copy of this process; standard output and error are its own by now.
 [[noreturn]] void run(const std::function<int()>& body) {
   int status = 127;
   try {

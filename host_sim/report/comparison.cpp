@@ -137,7 +137,7 @@ void append_setting(std::vector<ComparisonRow>& rows, Runs runs) {
   }));
 }
 
-/// Nothing if it is known of no run.
+/// Appends nothing if the consistency of no run is known.
 void append_consistency(std::vector<ComparisonRow>& rows, Runs runs) {
   const auto nees = [](const RunRecord& r) { return r.summary.navigation_nees; };
   if (std::ranges::none_of(runs, [&](const ComparedRun& run) { return nees(run.record).has_value(); })) return;
@@ -145,7 +145,7 @@ void append_consistency(std::vector<ComparisonRow>& rows, Runs runs) {
                         [&](const RunRecord& r) { return fixed(nees(r), 2); }));
 }
 
-/// Nothing if no run estimates the target's attitude.
+/// Appends nothing if no run estimates the target's attitude.
 void append_attitude(std::vector<ComparisonRow>& rows, Runs runs, const Papers& papers) {
   const auto has_attitude = [](const ComparedRun& run) { return run.record.summary.attitude_error_deg.has_value(); };
   if (std::ranges::none_of(runs, has_attitude)) return;
@@ -217,7 +217,7 @@ std::optional<std::string> share_of_images(const Summary& summary, const char* f
   return fmt::format("{:.1f} % of {:.0f}", 100.0 * some->second / all->second, all->second);
 }
 
-/// Nothing if no run navigates by the bearings of images.
+/// Appends nothing if no run navigates by the bearings of images.
 void append_images(std::vector<ComparisonRow>& rows, Runs runs) {
   std::vector<ImageFigure> figures{
       {"  images with a bearing", [](const Summary& s) { return share_of_images(s, "with_bearing"); }},

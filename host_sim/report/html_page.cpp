@@ -25,8 +25,8 @@ std::string anchor(std::string_view heading) {
   return out;
 }
 
-/// What a page break must not part from the heading: all up to the end of the first row of figures, unless a table
-/// comes before it; then nothing.
+/// Returns the part that a page break must not separate from the heading: all up to the end of the first row of
+/// figures, unless a table comes before it; then nothing.
 std::size_t size_kept_with_heading(std::string_view content) {
   constexpr std::string_view kRowEnd = "</div>\n";
   const std::size_t row = content.find("<div class=\"figures");

@@ -20,7 +20,7 @@ std::vector<std::string> testbeds_of(const Summary& summary) {
   return testbeds;
 }
 
-/// What the testbed says of itself: "emulated", "hardware"; empty if it says nothing.
+/// Returns what the testbed reports of itself: "emulated", "hardware"; empty if it reports nothing.
 std::string bench_of(const Summary& summary, const std::string& testbed) {
   const auto figures = summary.testbeds.find(testbed);
   if (figures == summary.testbeds.end()) return {};

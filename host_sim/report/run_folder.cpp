@@ -123,7 +123,8 @@ RunFolder::RunFolder(fs::path folder, const Summary& start, Existing existing, E
   }
 }
 
-/// In the neighbour from which the last summary takes its name: what fills the disk in flight leaves room to say so.
+/// Reserves space in the file from which the last summary takes its name: a disk that fills in flight leaves space to
+/// say so.
 void RunFolder::keep_room_for_summary() const {
   constexpr off_t kRoom = 128 * 1024;  // several summaries of a long mission
   const fs::path neighbour = files::neighbour_of(folder_ / kSummary);

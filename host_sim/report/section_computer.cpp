@@ -50,7 +50,7 @@ Fact counts(const char* name, std::initializer_list<Count> all) {
   return {name, text.empty() ? "none" : text, !text.empty()};
 }
 
-/// Without bytes there was no link: the flight software ran in this process.
+/// Adds one row without bytes: there was no link, as the flight software ran in this process.
 void add_link(const Summary::Link& link, std::vector<Fact>& facts) {
   if (link.bytes == 0) {
     facts.push_back({"link", "none: flight software in the same process"});

@@ -39,7 +39,7 @@ Plot distance_plot(const RunRecord& record) {
   return plot;
 }
 
-/// Where a source aids, starts or is suspended; nothing where it waits or is off.
+/// Returns the band where a source aids, starts or is suspended; empty where it waits or is off.
 std::optional<Band> band_of(int state) {
   switch (state) {
     case telemetry_event::kAidStarting:

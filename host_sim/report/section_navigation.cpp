@@ -24,7 +24,7 @@ bool is_exact(const std::vector<NavigationError>& all) {
   });
 }
 
-/// What an error plot shows of one error.
+/// Component of an error as a plot shows it.
 struct Component {
   std::size_t axis = 0;
   bool velocity = false;

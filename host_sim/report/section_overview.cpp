@@ -52,7 +52,7 @@ std::string or_none(const std::string& text) {
   return text.empty() ? "none" : text;
 }
 
-/// Nothing for a folder of an older version, which has none.
+/// Appends nothing for a folder of an older version, which has no provenance.
 void append_provenance(const Provenance& provenance, std::vector<Fact>& facts) {
   if (provenance.vbar_version.empty()) return;
   facts.push_back({"vbar", fmt::format("{}, commit {}", provenance.vbar_version, or_none(provenance.commit))});

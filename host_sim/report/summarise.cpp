@@ -70,7 +70,7 @@ void summarise_distance(const RunRecord& record, Summary& summary) {
   summary.min_distance_at_h = least ? std::optional(least->time_s / 3600.0) : std::nullopt;
 }
 
-/// What the flight computer's steps cost; in which unit is a fact.
+/// Summarises the cost of the flight computer's steps; its unit is a fact.
 void summarise_flight_steps(const RunRecord& record, Summary& summary) {
   Summary::FlightStep total;
   total.unit = summary.flight_step.unit;

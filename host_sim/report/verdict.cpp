@@ -76,7 +76,7 @@ bool is_valid_at(const RunRecord& record, double time_s) {
   return after != record.estimates.begin() && std::prev(after)->navigation_valid != 0;
 }
 
-/// When the estimate that was valid before `time_s` ceased to be; nothing if there had been none.
+/// Returns when the estimate that was valid before `time_s` became invalid; empty if there had been none.
 std::optional<double> lost_before(const RunRecord& record, double time_s) {
   std::optional<double> lost;
   bool was_valid = false;
@@ -158,7 +158,7 @@ void judge_control(const RunRecord& record, const Goals& goals, Verdict& verdict
   if (!text.empty()) findings.push_back({Outcome::kMissed, text});
 }
 
-/// Why no burn was flown by guidance that refused every plan to the end; empty if it flew some or is not holding.
+/// Returns why guidance that rejected every plan to the end flew no burn; empty if it flew some or is not holding.
 std::string refusal(const RunRecord& record, const Goals& goals) {
   const std::optional<telemetry_health>& health = record.summary.health;
   const bool is_holding = health && (health->faults_present & telemetry_health::kFaultHold) != 0;
