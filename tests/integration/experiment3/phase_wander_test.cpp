@@ -112,7 +112,7 @@ TEST(PhaseWander, DoesNotHideWrongIntegers) {
     ASSERT_TRUE(pair.hold_second_best()) << seed;
     ASSERT_GT(pair.wrong_integers(), 0) << seed;
     const auto contradictions = [&] {
-      return pair.carrier().counters().slips + pair.carrier().counters().phases_refused;
+      return pair.carrier().counters().slips + pair.carrier().counters().phases_rejected;
     };
     const std::int32_t before = contradictions();
     pair.fly(2);

@@ -36,7 +36,7 @@ TEST_P(WrongFix, TheSecondBestIntegersAreFoundOut) {
     ASSERT_TRUE(pair.hold_second_best()) << seed;
     ASSERT_GT(pair.wrong_integers(), 0) << seed;
     EXPECT_LT(pair.position_error_m(), kLargestMove_m) << seed;
-    const auto said = [&] { return pair.carrier().counters().slips + pair.carrier().counters().phases_refused; };
+    const auto said = [&] { return pair.carrier().counters().slips + pair.carrier().counters().phases_rejected; };
     const std::int32_t before = said();
     for (int epoch = 0; epoch < 2; ++epoch) {
       pair.fly();

@@ -181,7 +181,7 @@ TEST(CarrierFilter, HeldIntegersLeaveItFree) {
   KnownOrbit flight;
   for (int k = 0; k < 6; ++k) flight.take(10.0);
   for (const std::size_t k : {1U, 2U, 3U, 4U})
-    flight.filter.hold(*flight.estimator, k, 0, kCycles * static_cast<double>(k));
+    flight.carrier.hold(*flight.estimator, k, 0, kCycles * static_cast<double>(k));
   const double known_m = kCycles * gnss::wavelength(gnss::Signal::kGpsL1);
   for (int k = 0; k < 12; ++k) {
     flight.take(10.0);
@@ -213,7 +213,7 @@ TEST(CarrierFilter, AReleasedChannelIsInactive) {
   EXPECT_TRUE(flight.estimator->estimate().is_inactive(CarrierFilter::wander_index(last)));
   EXPECT_TRUE(flight.estimator->estimate().is_inactive(CarrierFilter::ambiguity_index(last)));
   EXPECT_FALSE(flight.estimator->estimate().is_inactive(CarrierFilter::wander_index(0)));
-  flight.filter.release(*flight.estimator, 0.05);
+  flight.carrier.release(*flight.estimator, 0.05);
   for (std::size_t k = 0; k < kPhaseChannels; ++k)
     EXPECT_TRUE(flight.estimator->estimate().is_inactive(CarrierFilter::wander_index(k))) << k;
 }
