@@ -32,14 +32,38 @@ for program in "$bundle"/bin/*; do
 done
 cp -r docs README.md CHANGELOG.md "$bundle/share/vbar/"
 
-# Of a program or library: the files of all its libraries and of the loader.
-libraries_of() { ldd "$1" | sed -n -e 's/.* => \(\/[^ ]*\) .*/\1/p' -e 's/^[[:space:]]*\(\/[^ ]*\) .*/\1/p'; }
 osmesa=$(ldconfig -p | sed -n 's/.*libOSMesa\.so\.8 .*x86-64.* => //p' | head -n 1)  # loaded for images
 [[ -n $osmesa ]] || { echo "ci/bundle.sh: libOSMesa.so.8 is not installed (ci/install.sh images)" >&2; exit 1; }
+# Mesa's rasteriser needs LLVM, and LLVM's other uses need libxml2 with ICU (manifests of Windows) and Z3 (Clang's analyser): a third
+# of the bundle. Libraries with the symbols that LLVM names, each of which ends the process, stand in for them.
+empty_library() {  # empty_library FILE USER: in $scratch/empty, with the symbols of FILE that USER names
+  local name=${1##*/}
+  local made=$scratch/empty/$name versions=()
+  comm -12 <(nm -D --defined-only --with-symbol-versions "$1" | awk '{ sub("@@", "@", $3); print $3 }' | sort) \
+    <(nm -D --undefined-only --with-symbol-versions "$2" | awk '{ print $2 }' | sort) > "$made.symbols"
+  [[ -s $made.symbols ]]
+  { sed 's/@.*//; s/.*/.globl &\n.type &, @function\n&:/' "$made.symbols"; echo 'ud2'; echo '.section .note.GNU-stack'; } > "$made.s"
+  sed -n 's/\(.*\)@\(.*\)/\2 { \1; };/p' "$made.symbols" | sort |
+    awk '{ if ($1 != last) { if (last) print "};"; print $1 " {" } last = $1; print $3 } END { if (last) print "};" }' > "$made.map"
+  [[ ! -s $made.map ]] || versions=(-Wl,--version-script="$made.map")
+  gcc -shared -nostdlib -Wl,-soname,"$name" "${versions[@]}" -o "$made" "$made.s"
+}
+mkdir "$scratch/empty"
+llvm=$(ldd "$osmesa" | sed -n 's/.*libLLVM.* => \([^ ]*\) .*/\1/p')
+for library in libxml2.so.2 libz3.so.4; do
+  file=$(ldd "$osmesa" | sed -n "s/.*$library => \([^ ]*\) .*/\1/p")
+  [[ -z $file ]] || empty_library "$file" "$llvm"
+done
+
+# Of a program or library: the files of all its libraries and of the loader.
+libraries_of() {
+  LD_LIBRARY_PATH=$scratch/empty ldd "$1" | sed -n -e 's/.* => \(\/[^ ]*\) .*/\1/p' -e 's/^[[:space:]]*\(\/[^ ]*\) .*/\1/p'
+}
 { echo "$osmesa"; libraries_of "$osmesa"; for program in "${programs[@]}"; do libraries_of "$bundle/bin/$program"; done; } | sort -u > "$scratch/libraries"
 mkdir -p "$lib" "$bundle/share/doc"
 while read -r file; do
   cp -L "$file" "$lib/"
+  [[ $file != "$scratch"/* ]] || continue
   # Debian's list names some files by /lib, others by /usr/lib; the one that it does not know is an error of dpkg-query.
   package=$({ dpkg-query --search "$file" "/usr$file" "${file#/usr}" 2> /dev/null || true; } | head -n 1 | cut -d: -f1)
   cp -Lf "/usr/share/doc/$package/copyright" "$bundle/share/doc/$package.copyright"

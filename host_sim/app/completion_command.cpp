@@ -19,30 +19,32 @@ namespace {
 
 constexpr std::string_view kMissionArgument = "mission";
 
-// Shared by both shells: @TABLE@ gives, for a command, its commands, its options, those with a value, and its first
-// argument.
-constexpr std::string_view kTableFunction = R"SCRIPT(_vbar_table() {
+// Functions of both shells: @TABLE@ gives, for a command, its commands, its options, those with a value, and its first
+// argument; _vbar_take takes a word before the cursor, in the variables of its caller.
+constexpr std::string_view kFunctions = R"SCRIPT(_vbar_table() {
   case "$1" in
 @TABLE@  esac
+}
+_vbar_take() {
+  if [[ "$1" == -* ]]; then
+    [[ " $vbar_valued " == *" $1 "* ]] && index=$((index + 1))
+  elif [[ -z "$first" && " $vbar_commands " == *" $1 "* ]]; then
+    command="${command:+$command }$1"
+    _vbar_table "$command"
+  elif [[ -z "$first" ]]; then
+    first="$1"
+  fi
 }
 )SCRIPT";
 
 constexpr std::string_view kBash = R"SCRIPT(# Completion of vbar for bash, written by `vbar completion bash`.
-@FUNCTION@
+@FUNCTIONS@
 _vbar() {
   local program="${COMP_WORDS[0]}" current="${COMP_WORDS[COMP_CWORD]}" previous="${COMP_WORDS[COMP_CWORD - 1]}"
-  local command="" first="" word index vbar_commands vbar_options vbar_valued vbar_argument
+  local command="" first="" index vbar_commands vbar_options vbar_valued vbar_argument
   _vbar_table ""
   for ((index = 1; index < COMP_CWORD; ++index)); do
-    word="${COMP_WORDS[index]}"
-    if [[ "$word" == -* ]]; then
-      [[ " $vbar_valued " == *" $word "* ]] && index=$((index + 1))
-    elif [[ -z "$first" && " $vbar_commands " == *" $word "* ]]; then
-      command="${command:+$command }$word"
-      _vbar_table "$command"
-    elif [[ -z "$first" ]]; then
-      first="$word"
-    fi
+    _vbar_take "${COMP_WORDS[index]}"
     # "=" parts words here.
     while ((index + 1 < COMP_CWORD)) && [[ "${COMP_WORDS[index + 1]}" == "=" ]]; do index=$((index + 2)); done
   done
@@ -72,21 +74,13 @@ complete -F _vbar vbar
 
 constexpr std::string_view kZsh = R"SCRIPT(#compdef vbar
 # Completion of vbar for zsh, written by `vbar completion zsh`.
-@FUNCTION@
+@FUNCTIONS@
 _vbar() {
   local program="${words[1]}" current="${words[CURRENT]}" previous="${words[CURRENT - 1]}"
-  local command="" first="" word index vbar_commands vbar_options vbar_valued vbar_argument
+  local command="" first="" index vbar_commands vbar_options vbar_valued vbar_argument
   _vbar_table ""
   for ((index = 2; index < CURRENT; ++index)); do
-    word="${words[index]}"
-    if [[ "$word" == -* ]]; then
-      [[ " $vbar_valued " == *" $word "* ]] && index=$((index + 1))
-    elif [[ -z "$first" && " $vbar_commands " == *" $word "* ]]; then
-      command="${command:+$command }$word"
-      _vbar_table "$command"
-    elif [[ -z "$first" ]]; then
-      first="$word"
-    fi
+    _vbar_take "${words[index]}"
   done
   if [[ "$previous" == "--set" ]]; then
     compadd -S '' -- ${(f)"$("$program" completion keys ${first:+"$first"} 2>/dev/null)"}
@@ -154,7 +148,7 @@ std::string mission_names() {
 std::string completion_script(const CLI::App& program, const std::string& shell) {
   std::string table;
   add_entries(program, "", table);
-  return filled(shell == "zsh" ? kZsh : kBash, "@FUNCTION@", filled(kTableFunction, "@TABLE@", table));
+  return filled(shell == "zsh" ? kZsh : kBash, "@FUNCTIONS@", filled(kFunctions, "@TABLE@", table));
 }
 
 std::string settable_keys(const std::filesystem::path& mission) {

@@ -31,12 +31,6 @@ bool is_control(std::string_view character) {
 
 }  // namespace
 
-std::string_view without_byte_order_mark(std::string_view text) {
-  constexpr std::string_view kMark = "\xEF\xBB\xBF";
-  if (text.starts_with(kMark)) text.remove_prefix(kMark.size());
-  return text;
-}
-
 std::string_view trimmed(std::string_view text) {
   const auto begin = text.find_first_not_of(kBlanks);
   if (begin == std::string_view::npos) return {};
@@ -147,6 +141,10 @@ std::vector<std::string_view> TextLines::words() const {
     words.push_back(rest.substr(begin, end - begin));
     rest.remove_prefix(end);
   }
+}
+
+void TextLines::check_ended() const {
+  if (!is_ended_) refuse("a last row without a line feed", "one: its last number may be cut short");
 }
 
 void TextLines::refuse(std::string_view expected) const {

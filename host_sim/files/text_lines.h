@@ -17,9 +17,6 @@ class FormatError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Returns the text without the mark of UTF-8 that some programs write before it.
-[[nodiscard]] std::string_view without_byte_order_mark(std::string_view text);
-
 /// Returns the text without blanks at either end.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 
@@ -64,6 +61,9 @@ class TextLines {
 
   /// Whether a line feed ends the line; the last line of a file that was cut short has none.
   [[nodiscard]] bool is_ended() const { return is_ended_; }
+
+  /// Refuses a line without a line feed: of formats in which its last number may be cut short.
+  void check_ended() const;
 
   /// The words of the line, between blanks and tabulators.
   [[nodiscard]] std::vector<std::string_view> words() const;

@@ -175,6 +175,7 @@ class OemReader {
       values[k] = *value;
     }
     if (!has_count) lines_.refuse("a time, a position in km and a velocity in km/s");
+    lines_.check_ended();
     const fsw::GpsTime time = metadata_.common.time(lines_, words[0]);
     if (!track.states.empty() && time <= track.states.back().time)
       lines_.refuse(fmt::format("{} at or before the state before it", words[0]), "times in ascending order");

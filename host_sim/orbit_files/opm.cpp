@@ -22,13 +22,17 @@ struct StateVector {
 
   void take(const TextLines& lines, const Keyword& keyword) {
     if (keyword.name == "CCSDS_OPM_VERS") check_version(lines, keyword);
-    if (keyword.name == "EPOCH") epoch = keyword.value;
+    if (keyword.name == "EPOCH") {
+      epoch = keyword.value;
+      lines.check_ended();
+    }
     for (std::size_t k = 0; k < kComponents.size(); ++k) {
       if (keyword.name != kComponents[k].name) continue;
       if (!keyword.unit.empty() && keyword.unit != kComponents[k].unit)
         lines.refuse(fmt::format("{} in {}", keyword.name, files::quoted(keyword.unit)), kComponents[k].unit);
       components[k] = files::number_of(keyword.value);
       if (!components[k]) lines.refuse(files::quoted(keyword.value), "a number");
+      if (keyword.unit.empty()) lines.check_ended();
     }
   }
 

@@ -35,7 +35,6 @@ std::span<const OrbitFormat> orbit_formats() {
 }
 
 OrbitFile read_orbits(std::string_view text, const std::string& file) {
-  text = files::without_byte_order_mark(text);
   const auto formats = orbit_formats();
   const auto format = std::ranges::find_if(formats, [&](const auto& one) { return one.recognises(text); });
   if (format != formats.end()) return {file, std::string(format->name), format->read(text, file)};

@@ -49,20 +49,8 @@ class Sp3Reader {
     if (mode != "P" && mode != "V") lines_.refuse("P or V in column 3 of the first line");
     has_velocities_ = mode == "V";
     if (!lines_.next() || !lines_.line().starts_with("##")) lines_.refuse("## in the second line");
-    interval_s_ = number(25, 38, "the interval of the epochs");
+    interval_s_ = lines_.number_in(25, 38, "the interval of the epochs");
     if (!(interval_s_ > 0.0 && interval_s_ <= 86400.0)) lines_.refuse("an interval above 0 and up to 86400 s");
-  }
-
-  double number(std::size_t first, std::size_t last, std::string_view what) const {
-    const auto value = files::number_of(lines_.columns(first, last));
-    if (!value) lines_.refuse(fmt::format("{} in columns {} to {}", what, first, last));
-    return *value;
-  }
-
-  int whole(std::size_t first, std::size_t last, std::string_view what) const {
-    const auto value = files::integer_of(lines_.columns(first, last));
-    if (!value) lines_.refuse(fmt::format("{} in columns {} to {}", what, first, last));
-    return *value;
   }
 
   /// In the first of two lines; version a has none, which means GPS.
@@ -77,15 +65,18 @@ class Sp3Reader {
 
   void take_epoch() {
     const auto time =
-        instant_of_carried({whole(4, 7, "the year"), whole(9, 10, "the month"), whole(12, 13, "the day"),
-                            whole(15, 16, "the hour"), whole(18, 19, "the minute"), number(21, 31, "the seconds")},
+        instant_of_carried({lines_.integer_in(4, 7, "the year"), lines_.integer_in(9, 10, "the month"),
+                            lines_.integer_in(12, 13, "the day"), lines_.integer_in(15, 16, "the hour"),
+                            lines_.integer_in(18, 19, "the minute"), lines_.number_in(21, 31, "the seconds")},
                            system_);
-    if (!time || whole(9, 10, "the month") == 0) lines_.refuse("a date and a time of day");
+    if (!time || lines_.integer_in(9, 10, "the month") == 0) lines_.refuse("a date and a time of day");
     if (time_ && *time <= *time_) lines_.refuse("an epoch at or before the one before", "epochs in ascending order");
     time_ = time;
   }
 
-  Vector3 three_numbers() const { return {number(5, 18, "x"), number(19, 32, "y"), number(33, 46, "z")}; }
+  Vector3 three_numbers() const {
+    return {lines_.number_in(5, 18, "x"), lines_.number_in(19, 32, "y"), lines_.number_in(33, 46, "z")};
+  }
 
   Track& track() {
     const std::string name(files::trimmed(lines_.columns(2, 4)));

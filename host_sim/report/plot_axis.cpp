@@ -19,7 +19,7 @@ double least_resolved(const Range& range) {
   return std::max(kUnits * std::numeric_limits<double>::epsilon() * size, std::numeric_limits<double>::min());
 }
 
-/// A multiple of `step`, with the digits that tell it from the next one.
+/// A multiple of `step`, with the digits that distinguish it from the next one.
 std::string tick_text(double value, double step) {
   constexpr double kLargestWritten = 1e9;  // in full
   constexpr int kDecimalsMax = 12;

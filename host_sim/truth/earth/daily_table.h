@@ -55,7 +55,7 @@ void read_daily_table(std::string_view text, const std::string& file, std::strin
     const bool is_row = parse_numbers(lines.line(), numbers) && numbers[0] == std::floor(numbers[0]) &&
                         numbers[0] >= kFirstDataMjd && numbers[0] <= kLastDataMjd;
     if (!is_row) lines.refuse(fmt::format("a whole MJD from 1980 to 2099 and {} numbers: {}", N - 1, columns));
-    if (!lines.is_ended()) lines.refuse("a last row without a line feed", "one: its last number may be cut short");
+    lines.check_ended();
     const int mjd_utc = static_cast<int>(numbers[0]);
     sequence.take(lines, mjd_utc);
     take(lines, mjd_utc, numbers);

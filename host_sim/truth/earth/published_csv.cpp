@@ -51,6 +51,7 @@ std::optional<double> PublishedCsv::number_or_blank(std::size_t place) const {
 double PublishedCsv::number(std::size_t place) const {
   const auto value = files::number_of(values_[place]);
   if (!value) lines_.refuse(files::quoted(values_[place]), fmt::format("a number as {}", names_[place]));
+  if (place + 1 == values_.size()) lines_.check_ended();
   return *value;
 }
 

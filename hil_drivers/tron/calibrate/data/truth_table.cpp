@@ -1,6 +1,5 @@
 // True poses of an emulator for measurements.
 
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -11,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "hil_drivers/tron/calibrate/data/calibration_data.h"
+#include "host_sim/files/text_lines.h"
 
 namespace vbar::tron::calibrate {
 namespace {
@@ -55,12 +55,11 @@ class TruthRows {
 
   [[nodiscard]] double number(const std::string& column) const {
     const std::string& cell = text(column);
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
+    const auto value = files::number_of(cell);
+    if (!value)
       throw std::runtime_error(
-          fmt::format("{}:{}: column {}: \"{}\" is not a finite number", file_, line_, column, cell));
-    return value;
+          fmt::format("{}:{}: column {}: {} is not a finite number", file_, line_, column, files::quoted(cell)));
+    return *value;
   }
 
  private:

@@ -115,8 +115,7 @@ class Coefficients {
       lines.refuse(fmt::format("gfc, degree up to {}, order up to the degree, C and S", *header_.max_degree));
     has_max_degree_ = has_max_degree_ || *n == *header_.max_degree;
     if (*n > degree_) return;
-    if (words.size() == kMinWords && !lines.is_ended())
-      lines.refuse("a last row without a line feed", "one: its last number may be cut short");
+    if (words.size() == kMinWords) lines.check_ended();
     const std::size_t at = GravityCoefficients::index(*n, *m);
     if (seen_[at]) lines.refuse(fmt::format("degree {}, order {} a second time", *n, *m), "each once");
     seen_[at] = true;

@@ -126,6 +126,7 @@ EphemerisFile read_ephemeris_table(std::string_view text, const std::string& fil
   while (lines.next()) {
     const std::string_view line = lines.line();
     if (line.empty() || line.front() == '#') continue;
+    lines.check_ended();
     try {
       if (line == kColumns) {
         columns_seen = true;

@@ -2,6 +2,8 @@
 // frame, and the same in another one; the OEM has states of a Keplerian orbit.
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <string>
 
 #include <erfa.h>
@@ -177,9 +179,20 @@ TEST(Oem, VersionsOneToThree) {
 }
 
 TEST(Oem, AByteOrderMarkIsSkipped) {
-  const std::string mark = "\xEF\xBB\xBF";
-  EXPECT_EQ(read_orbits(mark + oem(), "a.oem").tracks.at(0).states.size(), 61U);
-  EXPECT_EQ(read_orbits(mark + opm("GCRF"), "a.opm").format, "CCSDS OPM (KVN)");
+  const std::string file = testing::TempDir() + "vbar_byte_order_mark.oem";
+  std::ofstream(file) << "\xEF\xBB\xBF" << oem();
+  EXPECT_EQ(load_orbits(file).tracks.at(0).states.size(), 61U);
+  std::filesystem::remove(file);
+}
+
+// 7.5 km/s cut to 7 is a velocity too.
+TEST(Oem, ALastStateThatIsCutShortIsRefused) {
+  const std::string text = oem(), states = text.substr(0, text.find("COVARIANCE_START"));
+  EXPECT_EQ(error_of(states), "");
+  for (const std::size_t cut : {1U, 2U, 12U})
+    EXPECT_THAT(error_of(states.substr(0, states.size() - cut)),
+                HasSubstr("orbit.txt:78: found a last row without a line feed, expected one"));
+  EXPECT_EQ(error_of(text.substr(0, text.size() - 1)), "") << "COVARIANCE_STOP cannot be cut short";
 }
 
 TEST(Oem, OneOfSeveralObjectsMustBeNamed) {
@@ -215,6 +228,16 @@ TEST(Opm, InvalidFilesAreRefusedWithALine) {
   EXPECT_THAT(error_of(text, "6503.514000", "65O3.514000"), HasSubstr("expected a number"));
   EXPECT_THAT(error_of(text, "Z = -717.490000\n", ""), HasSubstr("found a message without Z"));
   EXPECT_THAT(error_of(text + "MAN_EPOCH_IGNITION = 1998-12-18T15:00:00\n"), HasSubstr("a state without maneuvers"));
+}
+
+TEST(Opm, ALastNumberThatIsCutShortIsRefused) {
+  const std::string text = opm("GCRF"), state = text.substr(0, text.find("MASS"));
+  EXPECT_EQ(error_of(state), "");
+  for (const std::size_t cut : {1U, 2U, 5U})
+    EXPECT_THAT(error_of(state.substr(0, state.size() - cut)),
+                HasSubstr("orbit.txt:16: found a last row without a line feed, expected one"));
+  EXPECT_EQ(error_of(state.substr(0, state.size() - 1) + " [km/s]"), "") << "its unit is whole";
+  EXPECT_EQ(error_of(text.substr(0, text.size() - 2)), "") << "no number of the state";
 }
 
 TEST(PublishedTime, CalendarDaysAndDaysOfTheYear) {

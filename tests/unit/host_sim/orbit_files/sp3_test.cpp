@@ -91,7 +91,7 @@ TEST(Sp3, TimesThatReachTheNextMinuteOrHour) {
     std::string text = published();
     const std::string_view minute = "*  2022 01 01 00 01 00.00000000";
     text.replace(text.find(minute), minute.size(), std::string("*  2022 01 01 ") + time);
-    const auto carried = read_orbits("\xEF\xBB\xBF" + text, "swarm.sp3").tracks.at(0).states;
+    const auto carried = read_orbits(text, "swarm.sp3").tracks.at(0).states;
     ASSERT_EQ(carried.size(), plain.size());
     EXPECT_EQ(carried[1].time, plain[1].time);
   }
@@ -121,6 +121,7 @@ TEST(Sp3, InvalidFilesAreRefusedWithALine) {
   EXPECT_THAT(error_of(published(), "VL47-17433", "VL48-17433"),
               HasSubstr("a velocity behind the satellite's position"));
   EXPECT_THAT(error_of(published(), "  6594.4386928", "  65X4.4386928"), HasSubstr("expected x in columns 5 to 18"));
+  EXPECT_THAT(error_of(published(), " 00 02 00.00000000", " 00 02 0"), HasSubstr("the seconds in columns 21 to 31"));
 }
 
 }  // namespace

@@ -373,5 +373,13 @@ TEST(OrientationFormats, ANumberThatIsCutShortIsRefused) {
               HasSubstr("found a last row without a line feed"));
 }
 
+// The type of a day, as CelesTrak has it, cannot be cut short; its offset dY can, where a file ends with it.
+TEST(OrientationFormats, ALastValueThatIsCutShortIsRefused) {
+  const std::string head = "MJD;Year;Month;Day;Type;x_pole;y_pole;Type;UT1-UTC;dPsi;dEps;dX;dY\n";
+  const std::string row = "61297;2026;9;14;final;0.192933;0.301;final;0.05;;;0.1;0.25";
+  EXPECT_EQ(error_of(head + row + "\n"), "");
+  EXPECT_THAT(error_of(head + row), HasSubstr("eop.txt:2: found a last row without a line feed"));
+}
+
 }  // namespace
 }  // namespace vbar::truth

@@ -63,6 +63,15 @@ TEST(EphemerisFile, ReadsNumbersIntoTheirPlaces) {
   EXPECT_EQ(read.corrections.utc_a1, 2e-15);
 }
 
+// A group delay of 5e-9 s cut to 5 s is a number too.
+TEST(EphemerisFile, ALastNumberThatIsCutShortIsRefused) {
+  const std::string text = std::string(kColumns) + "E07," + kNumbers;
+  EXPECT_EQ(refusal(text), "accepted");
+  for (const std::size_t cut : {1U, 4U})
+    EXPECT_EQ(refusal(text.substr(0, text.size() - cut)),
+              ":2: found a last row without a line feed, expected one: its last number may be cut short");
+}
+
 TEST(EphemerisFile, RefusesWithLineAndReason) {
   const std::string head = kColumns;
   EXPECT_EQ(refusal(""), ": holds no satellite");

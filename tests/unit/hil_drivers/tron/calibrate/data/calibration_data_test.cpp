@@ -149,6 +149,14 @@ TEST_F(TruthTable, DamageIsRefused) {
   std::vector<Measurement> measurements(1);
   write("0,board,0.1,0.2,3,1,0,0,0,nan,0,0,0,0,0,0,0,0,0,0,0,0\n");
   EXPECT_THROW(add_truth(measurements, file, Eigen::Isometry3d::Identity()), std::runtime_error);
+  write("0,board,\x1b[2J,0.2,3,1,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0\n");
+  try {
+    add_truth(measurements, file, Eigen::Isometry3d::Identity());
+    ADD_FAILURE() << "a command to the terminal is not a number";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("column C_x_m: \"?[2J\" is not a finite number"), std::string::npos)
+        << error.what();
+  }
   write("0,board,0.1\n");
   EXPECT_THROW(add_truth(measurements, file, Eigen::Isometry3d::Identity()), std::runtime_error);
   EXPECT_THROW(add_truth(measurements, "/nowhere.csv", Eigen::Isometry3d::Identity()), std::runtime_error);
