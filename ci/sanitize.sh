@@ -12,14 +12,14 @@ table=build/asan/unit_test_modules.txt  # lines "module program"
 case ${1:-} in
   "")
     share=$(ci/share.sh)
-    mapfile -t programs < <(awk -v share="$share" 'NF && NR % 8 == share { print $2 }' "$table")
+    mapfile -t programs < <(awk -v share="$share" 'NF && !seen[$2]++ && ++count % 8 == share { print $2 }' "$table")
     ((share == 0)) || targets=(flight_code)
     echo "eighth $share of 0 to 7: ${#programs[@]} test programs"
     ;;
-  all) mapfile -t programs < <(awk 'NF { print $2 }' "$table") ;;
+  all) mapfile -t programs < <(awk 'NF && !seen[$2]++ { print $2 }' "$table") ;;
   *) mapfile -t programs < <(awk -v modules="$*" '
       BEGIN { count = split(modules, module, " ") }
-      NF { for (i = 1; i <= count; ++i) if ($1 == module[i] || index($1, module[i] "/") == 1) { print $2; next } }' "$table") ;;
+      NF { for (i = 1; i <= count; ++i) if ($1 == module[i] || index($1, module[i] "/") == 1) { if (!seen[$2]++) print $2; next } }' "$table") ;;
 esac
 ((${#programs[@]} > 0)) || { echo "ci/sanitize.sh: no unit test in: $*" >&2; exit 2; }
 cmake --build --preset asan --target "${targets[@]}" "${programs[@]}"

@@ -10,7 +10,7 @@ analyzer=(-checks=-clang-analyzer-\*)
 sources=("$@")
 if [[ ${1:-} == --all ]]; then
   analyzer=()
-  sources=(fsw boards hil_drivers pil_bridge host_sim tests)
+  sources=(fsw boards hil_drivers emulators pil_bridge host_sim tests)
 elif [[ ${1:-} == --changed ]]; then
   base=$(git merge-base HEAD origin/main 2>/dev/null || true)
   if [[ -z $base || $base == "$(git rev-parse HEAD)" ]]; then base=$(git rev-parse --verify --quiet HEAD~1 || true); fi
@@ -30,7 +30,7 @@ fi
 
 # Clang's command lines, and the headers that the build generates.
 cmake --preset asan --log-level=WARNING >/dev/null
-cmake --build --preset asan --target flight_code vbar_host_twins vbar_host_camera
+cmake --build --preset asan --target flight_code vbar_host_sim_twins vbar_host_sim_twins_camera
 
 root=$(printf '%s' "$PWD" | sed 's/[][\.*^$+?(){}|]/\\&/g')
 log=$(mktemp)

@@ -139,7 +139,7 @@ def section(build, root, runs, table):
         table(["quantity", "median", "seeds", "expected"], consistency_rows(flown[MISSION], ratios)),
         "",
         "The NEES of attitude and rate was 28 when every image counted in full. The errors of the network return with the view: a view"
-        " that was seen before now contributes less (fsw/sources/keypoints/seen_views.h). The errors of the keypoints of one image are"
+        " that was seen before now contributes less (fsw/measurements/keypoints/seen_views.h). The errors of the keypoints of one image are"
         " alike in that they resemble a rotation and a shift of the target, whose variance is 1.9 times that of independent errors.",
         "",
         "Results of each seed, in the units above:",

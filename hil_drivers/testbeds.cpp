@@ -1,8 +1,7 @@
 #include "hil_drivers/testbeds.h"
 
-#include "hil_drivers/bench_kinds.h"
-#include "hil_drivers/external/external_kind.h"
-#include "hil_drivers/grand/grand_kind.h"
+#include "hil_drivers/external/external_run.h"
+#include "hil_drivers/grand/grand_run.h"
 #include "hil_drivers/grand/pps/edge_clock.h"
 
 namespace vbar::testbeds {
@@ -16,7 +15,7 @@ std::shared_ptr<const mission::TestbedSettings> read_without_driver(const missio
 
 Drivers drivers() {
   Drivers drivers{.testbeds = {&grand::kGrand, &external::kExternal}, .clocks = {&grand::kPpsClock}};
-  drivers.testbeds.insert(drivers.testbeds.begin() + 1, bench_kinds().begin(), bench_kinds().end());
+  drivers.testbeds.insert(drivers.testbeds.begin() + 1, optional_testbeds().begin(), optional_testbeds().end());
   return drivers;
 }
 

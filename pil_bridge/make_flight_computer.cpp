@@ -8,15 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "host_sim/io/byte_channels.h"
+#include "host_sim/io/byte_channel.h"
 #include "host_sim/io/udp_socket.h"
-#include "pil_bridge/arm_image.h"
-#include "pil_bridge/beside_program.h"
-#include "pil_bridge/guarded_process.h"
-#include "pil_bridge/in_process.h"
+#include "pil_bridge/qemu.h"
 #include "pil_bridge/remote_computer.h"
-#include "pil_bridge/stream_transport.h"
-#include "pil_bridge/udp_transport.h"
+#include "pil_bridge/test_article.h"
+#include "pil_bridge/transport.h"
 
 namespace vbar::pil {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "host_sim/io/wired_receiver.h"
+#include "host_sim/io/serial_line.h"
 #include "pil_bridge/flight_computer.h"
 #include "pil_bridge/link_faults.h"
 #include "pil_bridge/qemu.h"

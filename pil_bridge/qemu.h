@@ -1,11 +1,35 @@
 #pragma once
-// Command lines of the emulators, and the meaning of their counters.
+// Files of a build or an installation that the running program finds by their places relative to its own.
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
+#include <system_error>
 #include <vector>
 
+#include "host_sim/files/own_program.h"
+
 namespace vbar::pil {
+
+/// Paths relative to the program's folder: the file of an installation if there is one, else that of a build, whether
+/// or not it exists.
+inline std::string beside_program(const std::filesystem::path& installed, const std::filesystem::path& built) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path here = files::own_program().parent_path();
+  const bool is_installed = fs::is_regular_file(here / installed, error);
+  return (here / (is_installed ? installed : built)).lexically_normal().string();
+}
+
+// Whether a file is a program for the emulated ARM processor, by its ELF header: the emulators only fail to start, or
+// execute what they are given.
+
+/// Returns what `file` is instead of an ELF program for 32-bit ARM, little-endian, and what is accepted; empty if it is
+/// one.
+/// `is_for_linux`: also one that is relocated when it is loaded.
+[[nodiscard]] std::string fault_of_arm_image(const std::string& file, bool is_for_linux);
+
+// Command lines of the emulators, and the meaning of their counters.
 
 /// A fixed number of instructions per unit of emulated time, `2^shift` ns each: with it the emulator is deterministic.
 /// Below 5 the emulated clock cannot keep up with a serial link; above 8 the board's timers are slow without benefit.

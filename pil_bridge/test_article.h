@@ -1,10 +1,14 @@
 #pragma once
-// The functions of a test article (fsw/gnc/vbar_gnc.h), linked or loaded.
+// The functions of a test article (fsw/messaging/vbar_gnc.h), linked or loaded.
 
+#include <chrono>
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
-#include "fsw/gnc/vbar_gnc.h"
+#include "fsw/messaging/vbar_gnc.h"
+#include "pil_bridge/flight_computer.h"
 
 // Optional functions: an article that is linked without them has null in their place.
 extern "C" {
@@ -53,5 +57,24 @@ std::string library_file(const std::string& library);
 /// result. Throws FlightComputerError if it cannot be loaded, lacks a function, or was built for another version of the
 /// interface.
 std::shared_ptr<const TestArticle> load_test_article(const std::string& library);
+
+// The flight software in this process, called through its C interface. The order of its inputs, and the handling of
+// its output, follow boards/common/flight_executive.cpp, so that the result is the same as on a board.
+
+/// Throws FlightComputerError if the article refuses to start.
+std::unique_ptr<FlightComputer> make_in_process(std::shared_ptr<const TestArticle> article, std::uint8_t spacecraft);
+
+// A flight computer in a child process, so that foreign flight software that crashes or never returns ends neither the
+// run's record nor the program. The price is two messages over a socket for each step; vbar's own flight software,
+// whose loops are bounded, therefore stays in the process of the simulation.
+
+/// Calls `make` in a child process and hands every step over to what it makes. `name` is that of the flight software in
+/// messages. Throws FlightComputerError, here and from step(): what was thrown there, or that the software crashed or
+/// did not return within `step_limit`, or within a second of a signal to this process. The child has `memory_bytes`
+/// beside what it shares with this process; 0: no limit. Processes that it leaves behind in its group are ended with
+/// it.
+std::unique_ptr<FlightComputer> make_guarded(const std::function<std::unique_ptr<FlightComputer>()>& make,
+                                             const std::string& name, std::chrono::milliseconds step_limit,
+                                             std::uint64_t memory_bytes = 0);
 
 }  // namespace vbar::pil

@@ -2,12 +2,16 @@
 // The layer under the step barrier: a frame transport, which is either COBS over a byte channel (host_sim/io) or
 // datagrams. One thread; calls return by a deadline.
 
+#include <array>
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 
+#include "fsw/link/frame.h"
 #include "host_sim/io/byte_channel.h"
+#include "host_sim/io/file_descriptor.h"
 
 namespace vbar::pil {
 
@@ -43,5 +47,35 @@ class FrameTransport {
 
 /// A line that accepts no bytes for this long has failed: at 9600 baud a full window of frames needs about 45 s.
 inline constexpr std::chrono::seconds kWritePatience{60};
+
+// Frames over a byte channel: COBS-encoded, a zero byte after each.
+
+class StreamTransport final : public FrameTransport {
+ public:
+  explicit StreamTransport(std::unique_ptr<ByteChannel> channel) : channel_(std::move(channel)) {}
+
+  void send(std::span<const std::uint8_t> frame) override;
+  std::span<const std::uint8_t> receive(Clock::time_point deadline) override;
+  [[nodiscard]] TransportCounters counters() const override;
+  [[nodiscard]] std::string description() const override { return channel_->description(); }
+
+ private:
+  std::unique_ptr<ByteChannel> channel_;
+  fsw::link::CobsDecoder decoder_;
+  std::array<std::uint8_t, fsw::link::kMaxCobsFrameBytes + 1> coded_{};
+  std::span<const std::uint8_t> undecoded_;  ///< remaining bytes of the channel's last delivery
+  bool first_ = true;
+  TransportCounters counters_;
+};
+
+// Frames over UDP, one per datagram, to and from one fixed address.
+
+/// Datagrams that come from any other address than `peer` are ignored and counted (io::UdpSocket). Throws LinkError.
+std::unique_ptr<FrameTransport> make_udp_transport(const std::string& peer_address, std::uint16_t peer_port,
+                                                   std::uint16_t local_port = 0);
+
+/// Makes the same on a socket that is bound already.
+std::unique_ptr<FrameTransport> make_udp_transport(io::FileDescriptor bound_socket, const std::string& peer_address,
+                                                   std::uint16_t peer_port);
 
 }  // namespace vbar::pil

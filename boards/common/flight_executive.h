@@ -13,9 +13,9 @@
 #include "boards/common/snapshot_port.h"
 #include "fsw/core/gps_time.h"
 #include "fsw/core/result.h"
-#include "fsw/gnc/vbar_gnc.h"
 #include "fsw/link/batch.h"
 #include "fsw/link/frame.h"
+#include "fsw/messaging/vbar_gnc.h"
 
 namespace vbar::boards {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "fsw/gnc/vbar_gnc.h"
+#include "fsw/messaging/vbar_gnc.h"
 #include "fsw/packets/big_endian.h"
 
 // Optional functions: an image whose flight software lacks them has null in their place.

@@ -11,9 +11,7 @@
 #include <unistd.h>
 
 #include "boards/common/flight_executive.h"
-#include "boards/posix/endpoints.h"
 #include "boards/posix/links.h"
-#include "boards/posix/receiver_line.h"
 #include "boards/posix/stack_meter.h"
 
 namespace vbar::boards::posix {

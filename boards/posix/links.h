@@ -1,6 +1,5 @@
 #pragma once
-// Frame links of a flight computer under a POSIX system: a byte stream (serial device, pseudo-terminal, socket) and
-// UDP. Both serve a FlightExecutive until the run is over or the host is gone.
+// Endpoints of frame links. Functions that return a file descriptor return -1 and leave errno on failure.
 
 #include <array>
 #include <cstddef>
@@ -11,10 +10,61 @@
 
 #include "boards/common/flight_executive.h"
 #include "boards/common/session_guard.h"
-#include "boards/posix/receiver_line.h"
-#include "fsw/link/cobs.h"
+#include "fsw/link/frame.h"
 
 namespace vbar::boards::posix {
+
+/// Opens a serial device: raw, 8N1, no flow control, modem lines ignored. An unknown baud rate: EINVAL.
+int open_serial(const char* device, std::uint32_t baud);
+
+/// Connects to a listening Unix stream socket.
+int connect_unix(const char* path);
+
+/// Opens a UDP socket bound to `address`.
+int bind_udp(const sockaddr_in& address);
+
+/// Puts `fd` into raw mode if it is a terminal. Returns false if that fails.
+bool make_raw_if_terminal(int fd);
+
+/// Converts "127.0.0.1:5000" to an address; false if `text` is not one.
+bool parse_address(const char* text, sockaddr_in& address);
+
+/// Reads a decimal number up to `limit`; false if `text` is not one.
+bool parse_number(const char* text, std::uint32_t limit, std::uint32_t& number);
+
+// Serial line on which a GNSS receiver is wired to a flight computer under a POSIX system.
+
+class ReceiverLine {
+ public:
+  /// `device` is a serial device or pseudo-terminal, opened when a session requires it. Null: there is none.
+  explicit ReceiverLine(const char* device) : device_(device) {}
+  ~ReceiverLine() { close(); }
+  ReceiverLine(const ReceiverLine&) = delete;
+  ReceiverLine& operator=(const ReceiverLine&) = delete;
+
+  /// Opens the device at this rate and discards earlier bytes. Returns false if it cannot be opened or the rate is
+  /// unknown.
+  bool open(std::uint32_t baud);
+  void close();
+
+  /// Moves received bytes to `out` without waiting; returns their number. A line that was hung up gives none and is
+  /// opened again as soon as that is possible.
+  std::size_t read(std::span<std::uint8_t> out);
+
+  /// Descriptor to wait for bytes; -1 while the line is closed or hung up.
+  [[nodiscard]] int fd() const { return fd_; }
+
+ private:
+  bool open_device();
+  void hang_up();
+
+  const char* device_;
+  std::uint32_t baud_ = 0;  ///< 0: closed
+  int fd_ = -1;
+};
+
+// Frame links of a flight computer under a POSIX system: a byte stream (serial device, pseudo-terminal, socket) and
+// UDP. Both serve a FlightExecutive until the run is over or the host is gone.
 
 enum class LinkEnd : std::uint8_t {
   kGoodbye,   ///< the host ended the run

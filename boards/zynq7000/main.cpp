@@ -20,8 +20,8 @@
 #include "boards/zynq7000/uart.h"
 #include "boards/zynq7000/udp_endpoint.h"
 #include "boards/zynq7000/watchdog.h"
-#include "fsw/gnc/vbar_gnc.h"
-#include "fsw/link/cobs.h"
+#include "fsw/link/frame.h"
+#include "fsw/messaging/vbar_gnc.h"
 
 namespace vbar::boards::zynq7000 {
 namespace {

@@ -2,9 +2,9 @@
 
 #include "fsw/math/math.h"
 #include "fsw/orbit/mean_osculating.h"
+#include "fsw/orbit/propagate.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
-#include "fsw/orbit/secular.h"
 
 namespace vbar::fsw::control {
 namespace {

@@ -2,8 +2,8 @@
 
 #include "fsw/math/math.h"
 #include "fsw/math/symmetric_eigen.h"
+#include "fsw/orbit/propagate.h"
 #include "fsw/orbit/roe.h"
-#include "fsw/orbit/secular.h"
 
 namespace vbar::fsw::control {
 namespace {

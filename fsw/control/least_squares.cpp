@@ -4,7 +4,7 @@
 
 #include "fsw/control/arrival.h"
 #include "fsw/control/check_problem.h"
-#include "fsw/math/cholesky6.h"
+#include "fsw/math/cholesky.h"
 #include "fsw/math/math.h"
 #include "fsw/math/symmetric_eigen.h"
 

@@ -1,7 +1,7 @@
 #include "fsw/control/near_circular.h"
 
 #include "fsw/math/math.h"
-#include "fsw/orbit/secular.h"
+#include "fsw/orbit/propagate.h"
 
 namespace vbar::fsw::control {
 

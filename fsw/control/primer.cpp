@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "fsw/control/primer_extract.h"
-#include "fsw/math/cholesky6.h"
+#include "fsw/math/cholesky.h"
 #include "fsw/math/math.h"
 
 namespace vbar::fsw::control {

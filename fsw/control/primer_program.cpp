@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "fsw/math/cholesky6.h"
+#include "fsw/math/cholesky.h"
 #include "fsw/math/math.h"
 
 namespace vbar::fsw::control {

@@ -3,8 +3,8 @@
 //
 //   x <- d x + (1 - d) mean + w,  d = exp(-dt / time),  variance of w: sigma^2 (1 - d^2)
 
-#include "fsw/estimation/blocks.h"
 #include "fsw/estimation/estimate.h"
+#include "fsw/estimation/state_layout.h"
 #include "fsw/math/math.h"
 
 namespace vbar::fsw::estimation {

@@ -4,7 +4,7 @@
 #include <new>
 
 #include "fsw/gnc/gnc.h"
-#include "fsw/gnc/vbar_gnc.h"
+#include "fsw/messaging/vbar_gnc.h"
 
 namespace {
 

@@ -8,10 +8,10 @@
 namespace vbar::fsw::gnc {
 
 /// Detects an estimate that was changed between two steps, or that the last step had to discard.
-void Gnc::check_state(GpsTime now, Integrity integrity) {
-  const int failures = measurements_.trunk().failures();
+void Gnc::check_state(GpsTime now, navigation::Integrity integrity) {
+  const int failures = measurements_.filter().failures();
   faults_.check(now, {.fault = telemetry_health::kFaultState,
-                      .is_detected = integrity != Integrity::kIntact || failures > failures_,
+                      .is_detected = integrity != navigation::Integrity::kIntact || failures > failures_,
                       .argument = static_cast<double>(integrity)});
   failures_ = failures;
 }
@@ -36,7 +36,7 @@ void Gnc::check_inbox() {
 
 /// Detects a valid estimate without recent measurements, and navigation that has had no valid estimate since the start.
 void Gnc::check_navigation() {
-  const NavigationState& state = navigation_.state();
+  const navigation::NavigationState& state = navigation_.state();
   const double timeout = management_.configuration().navigation_timeout_s;
   const GpsTime last_heard = state.last_measurement > started_ ? state.last_measurement : started_;
   const double age_s = seconds(now_ - last_heard);
@@ -71,7 +71,7 @@ void Gnc::check_drift(const safety_configuration& safety) {
 /// Reports mode retreat as a fault, with the size of its burn.
 void Gnc::check_retreat() {
   faults_.check(now_, {.fault = telemetry_health::kFaultRetreat,
-                       .is_detected = management_.mode() == Mode::kRetreat,
+                       .is_detected = management_.mode() == guidance::Mode::kRetreat,
                        .argument = math::sqrt(retreat_.burn().dv_rtn.squaredNorm())});
 }
 

@@ -1,4 +1,5 @@
 #include "fsw/gnc/gnc.h"
+
 #include "fsw/gnc/telecommand_checks.h"
 
 namespace vbar::fsw::gnc {
@@ -9,7 +10,7 @@ Gnc::Gnc(std::uint8_t spacecraft, vbar_packet_sink sink, void* sink_context)
 Status Gnc::step(GpsTime now) {
   if (!accepts(now)) {
     refuse(now);
-    return is_usable(now) && now <= now_ ? Status::kBadSequence : Status::kOutOfRange;
+    return messaging::is_usable(now) && now <= now_ ? Status::kBadSequence : Status::kOutOfRange;
   }
   resume(now);
   verify_state(now);
@@ -29,8 +30,8 @@ Status Gnc::step(GpsTime now) {
 }
 
 void Gnc::verify_state(GpsTime now) {
-  const Integrity integrity = measurements_.verify();
-  if (integrity == Integrity::kLost) restart(now);
+  const navigation::Integrity integrity = measurements_.verify();
+  if (integrity == navigation::Integrity::kLost) restart(now);
   check_state(now, integrity);
 }
 
@@ -60,26 +61,27 @@ void Gnc::navigate() {
 }
 
 void Gnc::assess() {
-  guidance_.assess(now_, navigation_, measurements_.trunk(), management_);
+  guidance_.assess(now_, navigation_, measurements_.filter(), management_);
   assessment_.is_known = false;
-  const std::optional<DriftSituation> situation = guidance_.drift_situation();
+  const std::optional<guidance::DriftSituation> situation = guidance_.drift_situation();
   if (situation && management_.safety() != nullptr) {
     const double unmeasured_s = seconds(now_ - navigation_.state().last_measurement);
-    assessment_ = assess_drift_now(*situation, unmeasured_s, *management_.safety(), retreat_);
+    assessment_ = guidance::assess_drift_now(*situation, unmeasured_s, *management_.safety(), retreat_);
   }
 }
 
 void Gnc::supervise() {
   const safety_configuration* safety = management_.safety();
   if (safety == nullptr) return;
-  guard_.configure({.target_size_m = safety->target_size_m,
-                    .data_timeout_s = safety->data_timeout_s,
-                    .data_timeout_range_m = safety->data_timeout_range_m});
-  const NavigationState& state = navigation_.state();
+  safety_monitor_.configure({.target_size_m = safety->target_size_m,
+                             .data_timeout_s = safety->data_timeout_s,
+                             .data_timeout_range_m = safety->data_timeout_range_m});
+  const navigation::NavigationState& state = navigation_.state();
   const double range_m = state.valid ? (state.target.position_eci - state.servicer.position_eci).norm() : 0.0;
-  feed_guard(guard_, inbox_, telecommands_, attitude_, range_m);
-  feed_guard_codes(guard_, measurements_.gnss(), measurements_.trunk().settings().earth, range_m);
-  check_verdicts(guard_.judge(now_), now_, faults_);
+  fdir::update_safety_monitor(safety_monitor_, inbox_, telecommands_, attitude_, range_m);
+  fdir::update_safety_monitor_by_codes(safety_monitor_, measurements_.gnss(), measurements_.filter().settings().earth,
+                                       range_m);
+  fdir::check_verdicts(safety_monitor_.judge(now_), now_, faults_);
 }
 
 void Gnc::respond() {
@@ -88,9 +90,9 @@ void Gnc::respond() {
   if (safety == nullptr) return;
   check_drift(*safety);
   const bool is_demanded = faults_.demands(faults::Response::kRetreat);
-  const bool was_retreating = retreat_.phase() != RetreatSequence::Phase::kNone;
+  const bool was_retreating = retreat_.phase() != guidance::RetreatSequence::Phase::kNone;
   if (is_demanded) management_.retreat();
-  const bool is_retreating = management_.mode() == Mode::kRetreat;
+  const bool is_retreating = management_.mode() == guidance::Mode::kRetreat;
   if (is_retreating && !was_retreating) retreat_.begin();
   if (!is_retreating) retreat_.end();
   if (is_retreating) {
@@ -117,7 +119,7 @@ void Gnc::command() {
   command_exposures();
 }
 
-void Gnc::report(Outbox& outbox) const {
+void Gnc::report(messaging::Outbox& outbox) const {
   telecommands_.report(outbox, step_, now_);
   report_navigation(outbox);
   measurements_.report(outbox, step_, now_, inbox_);

@@ -10,34 +10,34 @@
 #include "fsw/core/gps_time.h"
 #include "fsw/core/result.h"
 #include "fsw/faults/fault_monitor.h"
-#include "fsw/gnc/assessment.h"
-#include "fsw/gnc/burn_monitor.h"
-#include "fsw/gnc/guard_feed.h"
-#include "fsw/gnc/guidance.h"
-#include "fsw/gnc/image_watch.h"
-#include "fsw/gnc/inbox.h"
-#include "fsw/gnc/management.h"
-#include "fsw/gnc/navigation.h"
-#include "fsw/gnc/outbox.h"
-#include "fsw/gnc/retreat_sequence.h"
-#include "fsw/gnc/step_clock.h"
-#include "fsw/gnc/telecommands.h"
-#include "fsw/gnc/trunk_navigation.h"
+#include "fsw/fdir/burn_monitor.h"
+#include "fsw/fdir/image_watch.h"
+#include "fsw/fdir/safety_monitor_inputs.h"
+#include "fsw/fdir/step_clock.h"
+#include "fsw/guidance/drift_assessment.h"
+#include "fsw/guidance/guidance.h"
+#include "fsw/guidance/management.h"
+#include "fsw/guidance/retreat_sequence.h"
+#include "fsw/messaging/inbox.h"
+#include "fsw/messaging/outbox.h"
+#include "fsw/messaging/telecommands.h"
+#include "fsw/navigation/measurement_scheduler.h"
+#include "fsw/navigation/navigation.h"
 
 namespace vbar::fsw::gnc {
 
 /// Holds the state that one step leaves for the next one. A snapshot contains it, and the counters of inbox and outbox.
 struct GncState {
-  Telecommands telecommands_;
-  Management management_;
-  TrunkNavigation measurements_;
-  NavigationSolution navigation_;
-  Guidance guidance_;
-  RetreatSequence retreat_;
-  Assessment assessment_;
-  BurnMonitor burns_;
-  guard::Guard guard_;
-  ImageWatch images_;
+  messaging::Telecommands telecommands_;
+  guidance::Management management_;
+  navigation::MeasurementScheduler measurements_;
+  navigation::NavigationSolution navigation_;
+  guidance::Guidance guidance_;
+  guidance::RetreatSequence retreat_;
+  guidance::Assessment assessment_;
+  fdir::BurnMonitor burns_;
+  fdir::SafetyMonitor safety_monitor_;
+  fdir::ImageWatch images_;
   std::optional<vbar::attitude> attitude_;  ///< the last one received, for the safety monitor
   std::optional<GpsTime> unsafe_since_;     ///< time since which no plan leaves an unsafe drift
   GpsTime now_;
@@ -87,11 +87,11 @@ class Gnc : private GncState {
   /// Acts: sends every command of the step, and notes it where its effect is expected.
   void command();
   /// Sends the telemetry of the step; the state stays as it is.
-  void report(Outbox& outbox) const;
+  void report(messaging::Outbox& outbox) const;
   void end_step();
 
   // Fault checks of the phases (fault_checks.cpp).
-  void check_state(GpsTime now, Integrity integrity);
+  void check_state(GpsTime now, navigation::Integrity integrity);
   void check_step_period(Duration gap);
   void check_inbox();
   void check_navigation();
@@ -105,14 +105,14 @@ class Gnc : private GncState {
   void command_exposures();
   /// Returns what is commanded for an impulse that is wanted, with the thruster as its burns have shown it.
   [[nodiscard]] Vector3 command_for(const Vector3& dv_rtn) const;
-  [[nodiscard]] std::optional<sources::Pointing> pointing_to_target() const;
+  [[nodiscard]] std::optional<measurements::Pointing> pointing_to_target() const;
 
   // Telemetry (gnc_telemetry.cpp).
-  void report_navigation(Outbox& outbox) const;
-  void report_control(Outbox& outbox) const;
-  void report_safety(Outbox& outbox) const;
-  void report_health(Outbox& outbox) const;
-  void report_events(Outbox& outbox) const;
+  void report_navigation(messaging::Outbox& outbox) const;
+  void report_control(messaging::Outbox& outbox) const;
+  void report_safety(messaging::Outbox& outbox) const;
+  void report_health(messaging::Outbox& outbox) const;
+  void report_events(messaging::Outbox& outbox) const;
 
   // Snapshots and the acceptance of steps (restart.cpp).
   [[nodiscard]] bool accepts(GpsTime now);
@@ -120,9 +120,10 @@ class Gnc : private GncState {
   void restart(GpsTime now);
   void resume(GpsTime now);
 
-  alignas(GncState) Inbox inbox_;  // aligned, to lie behind the padding of the state, which a snapshot contains
-  Outbox outbox_;
-  StepClock clock_;
+  alignas(
+      GncState) messaging::Inbox inbox_;  // aligned, to lie behind the padding of the state, which a snapshot contains
+  messaging::Outbox outbox_;
+  fdir::StepClock clock_;
   Status restored_ = Status::kOk;  ///< status of the restored snapshot, until the step after it
   bool is_restored_ = false;       ///< a snapshot was restored since the last step
 };

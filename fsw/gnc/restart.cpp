@@ -26,8 +26,8 @@ struct SnapshotHeader {
 static_assert(sizeof(SnapshotHeader) == 40);
 
 constexpr std::size_t kInboxAt = sizeof(SnapshotHeader);
-constexpr std::size_t kOutboxAt = kInboxAt + sizeof(Inbox::Retained);
-constexpr std::size_t kStateAt = kOutboxAt + sizeof(Outbox::Retained);
+constexpr std::size_t kOutboxAt = kInboxAt + sizeof(messaging::Inbox::Retained);
+constexpr std::size_t kStateAt = kOutboxAt + sizeof(messaging::Outbox::Retained);
 constexpr std::size_t kBytes = kStateAt + sizeof(GncState);
 
 std::uint32_t checksum(std::span<const std::uint8_t> snapshot) {
@@ -54,8 +54,8 @@ Status Gnc::save(std::span<std::uint8_t> snapshot) const {
   header.step = step_;
   header.time_ns = now_.ns;
   header.spacecraft = outbox_.spacecraft();
-  const Inbox::Retained inbox = inbox_.retained();
-  const Outbox::Retained outbox = outbox_.retained();
+  const messaging::Inbox::Retained inbox = inbox_.retained();
+  const messaging::Outbox::Retained outbox = outbox_.retained();
   copy_bytes(&bytes[0], &header, sizeof header);
   copy_bytes(&bytes[kInboxAt], &inbox, sizeof inbox);
   copy_bytes(&bytes[kOutboxAt], &outbox, sizeof outbox);
@@ -77,8 +77,8 @@ Status Gnc::restore(std::span<const std::uint8_t> snapshot) {
     return header.crc == checksum(snapshot.first(kBytes)) ? Status::kOk : Status::kBadChecksum;
   }();
   if (restored_ != Status::kOk) return restored_;
-  Inbox::Retained inbox;
-  Outbox::Retained outbox;
+  messaging::Inbox::Retained inbox;
+  messaging::Outbox::Retained outbox;
   copy_bytes(&inbox, &snapshot[kInboxAt], sizeof inbox);
   copy_bytes(&outbox, &snapshot[kOutboxAt], sizeof outbox);
   copy_bytes(static_cast<GncState*>(this), &snapshot[kStateAt], sizeof(GncState));
@@ -91,15 +91,15 @@ Status Gnc::restore(std::span<const std::uint8_t> snapshot) {
 /// Returns whether a step at `now` is accepted. The first one after a restart of the computer is accepted at any usable
 /// time: the age of the state decides what is kept.
 bool Gnc::accepts(GpsTime now) {
-  if (!is_usable(now)) return false;
+  if (!messaging::is_usable(now)) return false;
   if (!stepped_ || is_restored_) return true;
   switch (clock_.judge(now_, now, inbox_.step_period())) {
-    case StepClock::Verdict::kContinue:
+    case fdir::StepClock::Verdict::kContinue:
       return true;
-    case StepClock::Verdict::kRestart:
+    case fdir::StepClock::Verdict::kRestart:
       restart(now);
       return true;
-    case StepClock::Verdict::kRefuse:
+    case fdir::StepClock::Verdict::kRefuse:
       break;
   }
   return false;
@@ -155,7 +155,7 @@ void Gnc::restart(GpsTime now) {
   renew(retreat_);
   renew(assessment_);
   renew(burns_);
-  renew(guard_);
+  renew(safety_monitor_);
   renew(images_);
   attitude_.reset();
   unsafe_since_.reset();

@@ -2,16 +2,15 @@
 
 #include <type_traits>
 
-#include "fsw/gnc/inbox.h"
-#include "fsw/gnc/message_fields.h"
-#include "fsw/gnc/trunk_configuration.h"
 #include "fsw/math/math.h"
-#include "fsw/sources/bearings/bearing_configuration.h"
-#include "fsw/sources/calibrated_camera.h"
-#include "fsw/sources/carrier_pair/carrier_settings.h"
-#include "fsw/sources/image_use.h"
-#include "fsw/sources/keypoints/keypoint_settings.h"
-#include "fsw/sources/source_list.h"
+#include "fsw/measurements/bearings/bearing_source.h"
+#include "fsw/measurements/calibrated_camera.h"
+#include "fsw/measurements/cdgnss/cdgnss_source.h"
+#include "fsw/measurements/keypoints/keypoint_settings.h"
+#include "fsw/measurements/source_list.h"
+#include "fsw/messaging/inbox.h"
+#include "fsw/messaging/message_fields.h"
+#include "fsw/navigation/filter_configuration.h"
 
 namespace vbar::fsw::gnc {
 namespace {
@@ -20,14 +19,14 @@ constexpr double kLongestHorizon_s = 2e5;  // horizon of the assessment of a dri
 constexpr double kLargestARoe = 1e6;       // m; beyond it the relative-orbit models are not valid
 
 bool is_usable_span(std::int64_t ns) {
-  return is_usable(Duration{ns});
+  return messaging::is_usable(Duration{ns});
 }
 bool is_usable_span(double s) {
-  return s > 0.0 && s <= seconds(kLongestSpan);
+  return s > 0.0 && s <= seconds(messaging::kLongestSpan);
 }
 
 bool is_valid(const waypoint& w) {
-  if (!is_usable(GpsTime{w.gps_time_ns}) || !control::is_solver(w.control_mode)) return false;
+  if (!messaging::is_usable(GpsTime{w.gps_time_ns}) || !control::is_solver(w.control_mode)) return false;
   for (const double a_roe : w.a_roe_m) {
     if (math::abs(a_roe) > kLargestARoe) return false;
   }
@@ -78,30 +77,30 @@ bool is_valid(const fault_command& /*command*/) {
 
 namespace {
 
-using sources::is_valid;
+using measurements::is_valid;
 
 /// Tests whether an image feeds one measurement source: of a camera for bearings and keypoints the exposure decides
 /// which, and there are two.
-bool are_consistent(const Telecommands& telecommands) {
-  constexpr std::int32_t kBoth = sources::BearingSource::kUse | sources::KeypointSource::kUse;
+bool are_consistent(const messaging::Telecommands& telecommands) {
+  constexpr std::int32_t kBoth = measurements::BearingSource::kUse | measurements::KeypointSource::kUse;
   const auto* navigation = telecommands.proposed_or_in_force<navigation_configuration>(0);
   if (navigation == nullptr || (navigation->sources & kBoth) != kBoth) return true;
   for (std::size_t unit = 0; unit < packets::kCameras; ++unit) {
     const auto* bearings = telecommands.proposed_or_in_force<angles_only_configuration>(unit);
     const auto* keypoints = telecommands.proposed_or_in_force<pose_configuration>(unit);
     const bool feeds_two = bearings != nullptr && keypoints != nullptr;
-    if (feeds_two && !sources::two_exposures(*bearings, *keypoints).ok()) return false;
+    if (feeds_two && !measurements::two_exposures(*bearings, *keypoints).ok()) return false;
   }
   return true;
 }
 
 template <class Message>
-constexpr void set(TelecommandCheck<Message>& check) {
+constexpr void set(messaging::TelecommandCheck<Message>& check) {
   check.is_valid = [](const Message& message) { return is_valid(message); };
 }
 
-constexpr TelecommandRules kRules = [] {
-  TelecommandRules rules;
+constexpr messaging::TelecommandRules kRules = [] {
+  messaging::TelecommandRules rules;
   std::apply([](auto&... checks) { (set(checks), ...); }, rules.checks);
   rules.are_consistent = &are_consistent;
   rules.rejected_first = {packets::MessageTraits<pose_configuration>::kApid,
@@ -112,7 +111,7 @@ constexpr TelecommandRules kRules = [] {
 
 }  // namespace
 
-const TelecommandRules& telecommand_rules() {
+const messaging::TelecommandRules& telecommand_rules() {
   return kRules;
 }
 

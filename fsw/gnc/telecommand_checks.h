@@ -1,8 +1,8 @@
 #pragma once
-// The rules of all telecommands: whether the values of one are within their valid ranges, and whether several agree. A new
-// telecommand needs its is_valid: the rules do not compile without it.
+// The rules of all telecommands: whether the values of one are within their valid ranges, and whether several agree. A
+// new telecommand needs its is_valid: the rules do not compile without it.
 
-#include "fsw/gnc/telecommands.h"
+#include "fsw/messaging/telecommands.h"
 #include "fsw/packets/messages.h"
 
 namespace vbar::fsw::gnc {
@@ -17,6 +17,6 @@ namespace vbar::fsw::gnc {
 [[nodiscard]] bool is_valid(const fault_command& command);
 
 /// Returns the rules that the flight software passes to its store of telecommands.
-[[nodiscard]] const TelecommandRules& telecommand_rules();
+[[nodiscard]] const messaging::TelecommandRules& telecommand_rules();
 
 }  // namespace vbar::fsw::gnc

@@ -14,10 +14,30 @@
 #include <span>
 
 #include "fsw/core/result.h"
-#include "fsw/gnss/decorrelation.h"
 #include "fsw/gnss/lambda.h"
 
 namespace vbar::fsw::gnss {
+
+// Tail probability of the chi-square distribution, in closed form for integer degrees of freedom.
+
+/// Returns the probability that a chi-square variable of `degrees` >= 1 degrees of freedom exceeds x >= 0 (Abramowitz
+/// and Stegun, 26.4.4 and 26.4.5). The sum has `degrees` terms; the relative error is about 1e-15 times degrees.
+double chi_square_tail(double x, std::size_t degrees);
+
+// The ratio test with fixed failure rate (Teunissen and Verhagen 2009, "The GNSS ambiguity ratio-test revisited"): how
+// much farther than the best the second-best integers must be, so that strong models are accepted early and weak ones
+// are not accepted wrongly.
+
+/// Largest part of all problems in which wrong integers are accepted, if their covariance is correct.
+inline constexpr double kFixFailureRate = 1e-3;
+
+/// Failure rate of the weakest models of the table.
+inline constexpr double kLargestModelFailureRate = 0.1;
+
+/// Returns the smallest ratio second_norm2 / best_norm2 to accept, at least 1, for 1 <= count <= kMaxAmbiguities
+/// ambiguities of a model on which bootstrapping fails at the given rate (1 - success rate). Infinity, which no ratio
+/// reaches, beyond kLargestModelFailureRate and for an invalid rate or count.
+double ratio_threshold(std::size_t count, double model_failure_rate);
 
 /// Largest number of double differences that a filter may carry; 80 observations have fewer.
 inline constexpr std::size_t kMaxFloatAmbiguities = 80;

@@ -3,9 +3,8 @@
 #include <optional>
 
 #include "fsw/gnss/gps_week.h"
-#include "fsw/gnss/oem_bytes.h"
-#include "fsw/gnss/oem_time.h"
-#include "fsw/gnss/tracking_status.h"
+#include "fsw/gnss/oem_fields.h"
+#include "fsw/gnss/oem_range.h"
 #include "fsw/math/math.h"
 
 namespace vbar::fsw::gnss {

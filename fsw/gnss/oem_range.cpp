@@ -2,9 +2,7 @@
 
 #include <array>
 
-#include "fsw/gnss/oem_bytes.h"
-#include "fsw/gnss/oem_time.h"
-#include "fsw/gnss/tracking_status.h"
+#include "fsw/gnss/oem_fields.h"
 #include "fsw/math/math.h"
 
 namespace vbar::fsw::gnss {

@@ -3,9 +3,9 @@
 #include <optional>
 
 #include "fsw/gnss/gps_week.h"
-#include "fsw/gnss/oem_bytes.h"
 #include "fsw/gnss/oem_ephemeris.h"
-#include "fsw/gnss/tracking_status.h"
+#include "fsw/gnss/oem_fields.h"
+#include "fsw/gnss/oem_range.h"
 
 namespace vbar::fsw::gnss {
 namespace {

@@ -1,7 +1,6 @@
 #include "fsw/gnss/oem_solution.h"
 
-#include "fsw/gnss/oem_bytes.h"
-#include "fsw/gnss/oem_time.h"
+#include "fsw/gnss/oem_fields.h"
 #include "fsw/math/math.h"
 
 namespace vbar::fsw::gnss {

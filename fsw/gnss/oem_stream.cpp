@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "fsw/core/crc32.h"
-#include "fsw/gnss/oem_bytes.h"
+#include "fsw/gnss/oem_fields.h"
 
 namespace vbar::fsw::gnss {
 namespace {

@@ -54,4 +54,16 @@ ReceiverUpdate ReceiverDecoder::read(const OemMessage& message) {
   return ReceiverUpdate::kNone;
 }
 
+std::int32_t ReceiverDecoders::messages() const {
+  std::uint32_t sum = 0;
+  for (const auto& decoder : decoders_) sum += decoder.stream().counters().messages;
+  return static_cast<std::int32_t>(sum & 0x7FFF'FFFFU);
+}
+
+std::int32_t ReceiverDecoders::refused() const {
+  std::uint32_t sum = 0;
+  for (const auto& decoder : decoders_) sum += decoder.stream().counters().bad_checksum + decoder.counters().refused;
+  return static_cast<std::int32_t>(sum & 0x7FFF'FFFFU);
+}
+
 }  // namespace vbar::fsw::gnss

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "fsw/core/types.h"
 #include "fsw/math/math.h"
 
 namespace vbar::fsw::math {
@@ -72,5 +73,7 @@ class Cholesky {
   Vector inverse_diagonal_ = Vector::Zero();
   double smallest_pivot_ = 0.0;
 };
+
+using Cholesky6 = Cholesky<6>;
 
 }  // namespace vbar::fsw::math

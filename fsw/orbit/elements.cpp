@@ -4,7 +4,7 @@
 
 #include "fsw/math/math.h"
 #include "fsw/orbit/constants.h"
-#include "fsw/orbit/in_plane.h"
+#include "fsw/orbit/roe.h"
 
 namespace vbar::fsw::orbit {
 namespace {

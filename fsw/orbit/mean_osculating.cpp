@@ -2,7 +2,7 @@
 
 #include "fsw/math/math.h"
 #include "fsw/orbit/constants.h"
-#include "fsw/orbit/in_plane.h"
+#include "fsw/orbit/roe.h"
 
 // Brouwer's first-order formulas are written with e, w and M, which are not defined on a circular orbit. The quantities
 // that they change, the eccentricity vector and the mean argument of latitude, are. So the corrections are applied as

@@ -46,7 +46,7 @@ constexpr Route queue(std::size_t capacity) {
   return {.kind = RouteKind::kQueue, .capacity = capacity};
 }
 /// Telecommands are rare: four of each kind may arrive in a step. The newest of each unit is kept
-/// (fsw/gnc/telecommands.h).
+/// (fsw/messaging/telecommands.h).
 constexpr Route telecommand(std::size_t units) {
   return {.kind = RouteKind::kQueue, .capacity = 4, .units = units};
 }

@@ -1,8 +1,8 @@
 #include "fsw/safety/passive_safety.h"
 
 #include "fsw/math/math.h"
+#include "fsw/orbit/propagate.h"
 #include "fsw/orbit/roe.h"
-#include "fsw/orbit/secular.h"
 
 namespace vbar::fsw::safety {
 namespace {

@@ -3,8 +3,8 @@
 #include <array>
 
 #include "fsw/math/math.h"
+#include "fsw/orbit/propagate.h"
 #include "fsw/orbit/roe.h"
-#include "fsw/orbit/secular.h"
 #include "fsw/safety/linear_drift.h"
 
 namespace vbar::fsw::safety {

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "fsw/packets/messages.h"
-#include "hil_drivers/external/encoded_packet.h"
 
 namespace vbar::external {
 namespace {

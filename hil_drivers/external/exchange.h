@@ -6,11 +6,13 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "fsw/core/gps_time.h"
+#include "fsw/packets/messages.h"
 #include "fsw/packets/packet.h"
 #include "host_sim/mission/mission.h"
 #include "host_sim/twins/packet_source.h"
@@ -96,5 +98,15 @@ struct StatedTruth {
 /// of finite content, and have this spacecraft and unit.
 [[nodiscard]] std::string fault_of(std::span<const std::uint8_t> packet, std::span<const fsw::packets::Apid> allowed,
                                    std::uint8_t spacecraft, std::uint8_t unit);
+
+/// Returns the packet of a message. Throws std::runtime_error for a number that is not finite.
+template <class Message>
+[[nodiscard]] twins::Packet packet_of(const fsw::packets::PacketHeader& header, const Message& message) {
+  twins::Packet packet(fsw::packets::kMaxPacketBytes);
+  const auto size = fsw::packets::encode(header, message, packet);
+  if (!size.ok()) throw std::runtime_error("a number that is not finite");
+  packet.resize(size.value());
+  return packet;
+}
 
 }  // namespace vbar::external

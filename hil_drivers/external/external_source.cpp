@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "host_sim/twins/packets_rejected.h"
+#include "host_sim/twins/packet_source.h"
 
 namespace vbar::external {
 namespace {

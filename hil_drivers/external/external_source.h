@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "hil_drivers/external/exchange.h"
-#include "hil_drivers/testbed.h"
+#include "host_sim/sensors/testbed.h"
 #include "pil_bridge/flight_computer.h"
 
 namespace vbar::external {

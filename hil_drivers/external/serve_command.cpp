@@ -6,17 +6,15 @@
 
 #include <fmt/core.h>
 
-#include "hil_drivers/external/batch_server.h"
-#include "hil_drivers/external/served_source.h"
-#include "hil_drivers/external/served_truth.h"
-#include "host_sim/app/connect_flight_computer.h"
-#include "host_sim/app/exit_codes.h"
-#include "host_sim/app/flown_truth.h"
-#include "host_sim/io/byte_channels.h"
-#include "host_sim/mission/catalogue.h"
+#include "hil_drivers/external/source_server.h"
+#include "host_sim/installation/sensor_kinds.h"
+#include "host_sim/io/byte_channel.h"
 #include "host_sim/mission/data_directory.h"
-#include "host_sim/sensors/sensor_kinds.h"
-#include "pil_bridge/stream_transport.h"
+#include "host_sim/mission/load.h"
+#include "host_sim/simulation/exit_codes.h"
+#include "host_sim/simulation/flight_computer.h"
+#include "host_sim/simulation/run_truth.h"
+#include "pil_bridge/transport.h"
 
 namespace vbar::external {
 namespace {
@@ -49,7 +47,7 @@ class Served {
  private:
   [[nodiscard]] ServedTruth::Make make_truth() const {
     return [&mission = mission_] {
-      return std::make_unique<app::FlownTruth>(mission, app::flying_spacecraft(mission), mission::data_directory());
+      return std::make_unique<app::RunTruth>(mission, app::flying_spacecraft(mission), mission::data_directory());
     };
   }
 

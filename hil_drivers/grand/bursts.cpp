@@ -4,8 +4,7 @@
 
 #include <boost/crc.hpp>
 
-#include "fsw/gnss/oem_bytes.h"
-#include "fsw/gnss/oem_time.h"
+#include "fsw/gnss/oem_fields.h"
 
 namespace vbar::grand {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "hil_drivers/testbed_facts.h"
-#include "host_sim/report/section_parts.h"
+#include "hil_drivers/common/testbed_facts.h"
+#include "host_sim/report/sections/sections.h"
 #include "host_sim/report/statistics.h"
 
 namespace vbar::grand {

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "hil_drivers/testbed_facts.h"
-#include "host_sim/report/section_parts.h"
+#include "hil_drivers/common/testbed_facts.h"
+#include "host_sim/report/sections/sections.h"
 #include "host_sim/report/statistics.h"
 
 namespace vbar::optical_stimulator {
@@ -26,22 +26,22 @@ constexpr const char* kName = "optical_stimulator";
 struct Wait {
   const char* name;
   const char* figure;  // key of the summary
-  double BenchRow::*value_s;
+  double StimulatorRow::*value_s;
 };
-constexpr std::array<Wait, 3> kWaits{{{"render", "render", &BenchRow::render_s},
-                                      {"show", "show", &BenchRow::show_s},
-                                      {"expose and receive", "receive", &BenchRow::receive_s}}};
+constexpr std::array<Wait, 3> kWaits{{{"render", "render", &StimulatorRow::render_s},
+                                      {"show", "show", &StimulatorRow::show_s},
+                                      {"expose and receive", "receive", &StimulatorRow::receive_s}}};
 
-std::vector<double> sorted_values(const std::vector<BenchRow>& rows, double BenchRow::*value) {
+std::vector<double> sorted_values(const std::vector<StimulatorRow>& rows, double StimulatorRow::*value) {
   std::vector<double> values;
-  for (const BenchRow& row : rows) values.push_back(row.*value);
+  for (const StimulatorRow& row : rows) values.push_back(row.*value);
   std::ranges::sort(values);
   return values;
 }
 
 /// Wall clock by its parts: of an image, and of the whole run.
 std::string wall_clock_table(const RunRecord& record) {
-  const auto& rows = record.tables.rows<BenchRow>();
+  const auto& rows = record.tables.rows<StimulatorRow>();
   const auto& share = record.summary.wall_share;
   std::vector<std::vector<std::string>> cells;
   for (const Wait& wait : kWaits) {
@@ -58,18 +58,18 @@ std::string wall_clock_table(const RunRecord& record) {
 }
 
 Plot plot_of(const RunRecord& record, const report::View& view, const char* title, const char* quantity,
-             double BenchRow::*value) {
+             double StimulatorRow::*value) {
   Plot plot = report::time_plot(view, title, quantity, Unit::kNone);
-  plot.series = {
-      {quantity, 0, Mark::kDots,
-       report::over_time(record.tables.rows<BenchRow>(), view, [&](const BenchRow& row) { return row.*value; })}};
+  plot.series = {{quantity, 0, Mark::kDots,
+                  report::over_time(record.tables.rows<StimulatorRow>(), view,
+                                    [&](const StimulatorRow& row) { return row.*value; })}};
   return plot;
 }
 
 }  // namespace
 
 std::vector<report::TableKind> tables() {
-  return {report::table_of_extension<BenchRow>("bench.csv")};
+  return {report::table_of_extension<StimulatorRow>("bench.csv")};
 }
 
 void add_figures(const RunFigures& run, RunRecord& record) {
@@ -79,7 +79,7 @@ void add_figures(const RunFigures& run, RunRecord& record) {
   figures["camera_serial"] = run.devices.serial;
   figures["calibration"] = run.calibration_file.string();
   if (run.calibration != nullptr) {
-    const BenchCalibration& calibration = *run.calibration;
+    const StimulatorCalibration& calibration = *run.calibration;
     figures["calibration_date_utc"] = calibration.validity.date_utc;
     figures["calibration_residual_arcsec"] = calibration.held_out.region.mean_arcsec;
     figures["centroid_floor_px"] = calibration.centroid_floor_px;
@@ -105,11 +105,11 @@ void add_figures(const RunFigures& run, RunRecord& record) {
 }
 
 void summarise(const RunRecord& record, report::Summary& summary) {
-  const auto& rows = record.tables.rows<BenchRow>();
+  const auto& rows = record.tables.rows<StimulatorRow>();
   if (rows.empty()) return;
   TestbedFigures& figures = summary.testbeds[kName];
   double retried = 0.0, stale = 0.0, resent = 0.0, reconnects = 0.0, clipped = 0.0, wanted = 0.0;
-  for (const BenchRow& row : rows) {
+  for (const StimulatorRow& row : rows) {
     retried += row.tries > 1 ? 1.0 : 0.0;
     stale += static_cast<double>(row.stale);
     resent += static_cast<double>(row.packets_resent);
@@ -142,13 +142,13 @@ std::vector<report::Section> sections(const RunRecord& record) {
                   : "The camera of this run does not name itself an emulator: display, lenses and camera are those at "
                     "the addresses of the mission.");
   content += report::fact_list(testbeds::facts_of(figures));
-  if (!record.tables.rows<BenchRow>().empty()) {
+  if (!record.tables.rows<StimulatorRow>().empty()) {
     content += wall_clock_table(record);
     const report::View view = report::whole_run(record);
     content += report::plot_rows(
         2, {plot_of(record, view, "Brightness of the frame strip", "relative to the calibration",
-                    &BenchRow::strip_brightness),
-            plot_of(record, view, "From the trigger until the image is whole", "wait (s)", &BenchRow::receive_s)});
+                    &StimulatorRow::strip_brightness),
+            plot_of(record, view, "From the trigger until the image is whole", "wait (s)", &StimulatorRow::receive_s)});
   }
   return {{"Optical Stimulator", content, {"bench.csv"}}};
 }

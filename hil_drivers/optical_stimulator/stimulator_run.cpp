@@ -8,10 +8,63 @@
 
 #include <fmt/format.h>
 
-#include "hil_drivers/optical_stimulator/stimulator_camera.h"
+#include "hil_drivers/common/emulator_process.h"
 #include "hil_drivers/optical_stimulator/stimulator_report.h"
 
 namespace vbar::optical_stimulator {
+
+namespace {
+
+using mission::from_to;
+using mission::TableReader;
+
+std::chrono::nanoseconds milliseconds(const TableReader& section, std::string_view key, double high, double otherwise) {
+  return std::chrono::nanoseconds(std::llround(1e6 * section.number(key, from_to(0.0, high), otherwise)));
+}
+
+/// Without a testbed that names it, the address of a device is required.
+std::string address(const TableReader& section, std::string_view key, bool is_required) {
+  const std::string value = section.text(key, "");
+  if (is_required && value.empty()) section.refuse(key, "nothing", "an address, as no bench names one");
+  return value;
+}
+
+constexpr const char* kEmulated =
+    "vbar os_calibrate --seed {N} --out {out} "
+    "--bench \"vbar_os_bench {data}/benches/optical_stimulator.toml --directory {directory} --seed {seed}\"";
+constexpr const char* kHardware = "vbar os_calibrate --camera IP --x-display :0 --rails LINE --out {out}";
+
+}  // namespace
+
+std::shared_ptr<const mission::TestbedSettings> read_optical_stimulator(const TableReader& section) {
+  auto settings = std::make_shared<OpticalStimulatorSettings>();
+  settings->bench = section.text("bench", "");
+  const bool is_required = settings->bench.empty();
+  settings->calibration = section.text("calibration");
+  settings->camera_address = address(section, "camera", is_required);
+  settings->x_display = address(section, "display", is_required);
+  settings->output = section.text("output", "");
+  settings->rails = section.text("rails", "");
+  settings->packet_size = static_cast<int>(section.integer("packet_size", 576, 9000, settings->packet_size));
+  if (const auto delay_us = section.integer("packet_delay_us", 0, 100'000, 0); delay_us > 0)
+    settings->packet_delay_us = static_cast<int>(delay_us);
+  settings->settle = milliseconds(section, "settle_ms", 10'000.0, 35.0);
+  settings->timeout =
+      std::chrono::duration_cast<std::chrono::milliseconds>(milliseconds(section, "timeout_ms", 60'000.0, 3000.0));
+  settings->retries = static_cast<int>(section.integer("retries", 0, 20, settings->retries));
+  settings->any_exposure = section.flag("any_exposure", false);
+  settings->white_electrons = section.number("strip_electrons", from_to(1000.0, 1e6), settings->white_electrons);
+  section.finish();
+  return settings;
+}
+
+std::filesystem::path calibration_file(const OpticalStimulatorSettings& settings,
+                                       const std::filesystem::path& data_directory, std::uint64_t seed) {
+  return testbeds::find_calibration_file(settings.calibration, data_directory, seed,
+                                         {"testbed.optical_stimulator", settings.bench.empty() ? kHardware : kEmulated,
+                                          "some minutes (less than one with --quick)"});
+}
+
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -77,7 +130,7 @@ void StimulatorRun::start() {
 }
 
 void StimulatorRun::open_devices() {
-  BenchAddresses addresses;
+  TestbedAddresses addresses;
   if (process_) addresses = read_addresses(process_->addresses_file());
   DevicePlan plan;
   plan.camera_address = settings_.camera_address.empty() ? addresses.camera : settings_.camera_address;
@@ -126,7 +179,7 @@ void StimulatorRun::check_bench() {
 }
 
 twins::camera::TakenImage StimulatorRun::take(const twins::camera::Exposure& exposure) {
-  BenchRow row;
+  StimulatorRow row;
   row.time_s = fsw::seconds(exposure.time - context_.mission.epoch);
   row.image = exposure.number;
   const auto rendering = Clock::now();
@@ -164,7 +217,7 @@ twins::camera::TakenImage StimulatorRun::take(const twins::camera::Exposure& exp
 std::vector<twins::Note> StimulatorRun::statistics() const {
   const std::scoped_lock lock(mutex_);
   double render_s = 0.0;
-  for (const BenchRow& row : rows_) render_s += row.render_s;
+  for (const StimulatorRow& row : rows_) render_s += row.render_s;
   return {{"render_s", render_s}};
 }
 
@@ -192,12 +245,32 @@ void StimulatorRun::finish() noexcept {
       figures.faults = process_->faults();
     }
     const std::scoped_lock lock(mutex_);
-    record_->tables.rows<BenchRow>() = rows_;
+    record_->tables.rows<StimulatorRow>() = rows_;
     add_figures(figures, *record_);
   } catch (...) {
     // Without memory for its figures the run still ends in order.
   }
   record_ = nullptr;
 }
+
+namespace {
+
+std::shared_ptr<testbeds::TestbedRun> open(const mission::TestbedSettings& settings,
+                                           const testbeds::RunContext& context) {
+  return std::make_shared<StimulatorRun>(dynamic_cast<const OpticalStimulatorSettings&>(settings), context);
+}
+
+testbeds::CalibratedCamera calibrated(const mission::TestbedSettings& settings, const mission::Mission& mission,
+                                      const std::filesystem::path& data_directory,
+                                      const twins::camera::CameraSettings& of_mission) {
+  const auto& own = dynamic_cast<const OpticalStimulatorSettings&>(settings);
+  const StimulatorCalibration calibration = load_calibration(calibration_file(own, data_directory, mission.seed));
+  return {calibrated_camera(calibration, of_mission), calibration.centroid_floor_px};
+}
+
+}  // namespace
+
+const testbeds::TestbedKind kOpticalStimulator{
+    {"optical_stimulator", read_optical_stimulator}, open, {tables, summarise, sections}, calibrated};
 
 }  // namespace vbar::optical_stimulator

@@ -1,25 +1,51 @@
 #pragma once
 // Optical Stimulator during one run: calibration, emulator process, display, camera, and the images taken.
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "hil_drivers/bench_process/bench_process.h"
-#include "hil_drivers/optical_stimulator/addresses.h"
-#include "hil_drivers/optical_stimulator/bench_row.h"
-#include "hil_drivers/optical_stimulator/calibration_file/bench_calibration.h"
-#include "hil_drivers/optical_stimulator/exchange/exchange.h"
-#include "hil_drivers/optical_stimulator/hardware/bench_devices.h"
-#include "hil_drivers/optical_stimulator/scene/scene_pictures.h"
-#include "hil_drivers/optical_stimulator/self_check/self_check.h"
-#include "hil_drivers/optical_stimulator/settings.h"
-#include "hil_drivers/testbed.h"
+#include "hil_drivers/common/emulator_process.h"
+#include "hil_drivers/optical_stimulator/hardware/devices.h"
+#include "hil_drivers/optical_stimulator/imaging/image_exchange.h"
+#include "hil_drivers/optical_stimulator/imaging/self_check.h"
+#include "hil_drivers/optical_stimulator/optics/calibration.h"
+#include "hil_drivers/optical_stimulator/pictures/scene_pictures.h"
+#include "hil_drivers/optical_stimulator/stimulator_report.h"
+#include "host_sim/mission/mission.h"
+#include "host_sim/mission/table_reader.h"
+#include "host_sim/sensors/testbed.h"
 
 namespace vbar::optical_stimulator {
+
+// Section [testbed.optical_stimulator] of a mission: display, camera and rails.
+
+struct OpticalStimulatorSettings : mission::TestbedSettings {
+  std::string bench;        ///< command line of the emulator; empty: hardware, or a testbed that runs already
+  std::string calibration;  ///< path of the calibration's file; {data} and {seed} are replaced
+  // Addresses; empty: as addresses.json states.
+  std::string camera_address, x_display, output;
+  std::string rails;  ///< a tty, or host:port; empty: as the testbed says or, without a testbed, none
+  int packet_size = 1400;
+  std::optional<int> packet_delay_us;  ///< empty: as the socket's buffer needs
+  std::chrono::nanoseconds settle{};   ///< from a picture on the screen to the trigger
+  std::chrono::milliseconds timeout{};
+  int retries = 3;
+  bool any_exposure = false;  ///< exposures need not be whole frames of the display
+  double white_electrons = 12000.0;
+};
+
+/// Throws MissionError.
+std::shared_ptr<const mission::TestbedSettings> read_optical_stimulator(const mission::TableReader& section);
+
+/// Returns the file of the calibration.
+[[nodiscard]] std::filesystem::path calibration_file(const OpticalStimulatorSettings& settings,
+                                                     const std::filesystem::path& data_directory, std::uint64_t seed);
 
 class StimulatorRun final : public testbeds::TestbedRun, public std::enable_shared_from_this<StimulatorRun> {
  public:
@@ -50,11 +76,11 @@ class StimulatorRun final : public testbeds::TestbedRun, public std::enable_shar
   OpticalStimulatorSettings settings_;
   testbeds::RunContext context_;
   std::filesystem::path calibration_file_;
-  std::optional<BenchCalibration> calibration_;
+  std::optional<StimulatorCalibration> calibration_;
   std::optional<testbeds::CameraPlan> plan_;
   twins::camera::CameraSettings camera_;  ///< as calibrated
-  std::optional<bench_process::BenchProcess> process_;
-  std::optional<BenchDevices> devices_;
+  std::optional<testbeds::EmulatorProcess> process_;
+  std::optional<StimulatorDevices> devices_;
   std::optional<DisplayLight> light_;
   std::shared_ptr<const DisplayMap> map_;
   std::optional<FrameStrip> strip_;
@@ -65,7 +91,26 @@ class StimulatorRun final : public testbeds::TestbedRun, public std::enable_shar
   report::RunRecord* record_ = nullptr;
 
   mutable std::mutex mutex_;  // guards the rows, which take() adds
-  std::vector<BenchRow> rows_;
+  std::vector<StimulatorRow> rows_;
 };
+
+// Camera of the testbed as the image taker of a sensor.
+
+class StimulatorCamera final : public twins::camera::ImageTaker {
+ public:
+  explicit StimulatorCamera(std::shared_ptr<StimulatorRun> run) : run_(std::move(run)) {}
+
+  void start(fsw::GpsTime /*first_epoch*/) override { run_->start(); }
+  void stop(twins::StopReason /*reason*/) override { run_->stop(); }
+  twins::camera::TakenImage take(const twins::camera::Exposure& exposure) override { return run_->take(exposure); }
+  [[nodiscard]] std::vector<twins::Note> statistics() const override { return run_->statistics(); }
+
+ private:
+  std::shared_ptr<StimulatorRun> run_;
+};
+
+// [testbed.optical_stimulator], registered in ../testbeds.cpp.
+
+extern const testbeds::TestbedKind kOpticalStimulator;
 
 }  // namespace vbar::optical_stimulator

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "hil_drivers/tron/tron_row.h"
+#include "hil_drivers/tron/imaging/image_exchange.h"
 #include "host_sim/report/extension.h"
 #include "host_sim/report/provenance.h"
 

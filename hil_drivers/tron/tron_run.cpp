@@ -9,16 +9,65 @@
 
 #include <fmt/format.h>
 
-#include "hil_drivers/tron/fusion/fuse.h"
-#include "hil_drivers/tron/lights/light_values.h"
-#include "hil_drivers/tron/scene/scene_of_exposure.h"
-#include "hil_drivers/tron/tron_camera.h"
+#include "hil_drivers/common/emulator_process.h"
+#include "hil_drivers/tron/geometry/pose_fusion.h"
+#include "hil_drivers/tron/lights/room_light.h"
+#include "hil_drivers/tron/motion_planning/arm_planner.h"
 #include "hil_drivers/tron/tron_report.h"
 #include "host_sim/engine/random_stream.h"
+#include "host_sim/files/text_lines.h"
 #include "host_sim/mission/body_file.h"
 #include "host_sim/twins/camera/photometry.h"
 
 namespace vbar::tron {
+
+using mission::above_to;
+using mission::from_to;
+using mission::TableReader;
+
+std::shared_ptr<const mission::TestbedSettings> read_tron(const TableReader& section) {
+  auto settings = std::make_shared<TronSettings>();
+  TronSettings& tron = *settings;
+  tron.bench = section.text("bench", "");
+  tron.laboratory = section.text("laboratory", tron.laboratory);
+  tron.calibration = section.text("calibration");
+  tron.camera_address = section.text("camera", "");
+  tron.camera_robot_address = section.text("camera_robot", "");
+  tron.target_robot_address = section.text("target_robot", "");
+  tron.lights_address = section.text("lights", "");
+  tron.trials = static_cast<int>(section.integer("trials", 1, 100'000, tron.trials));
+  tron.max_hidden = static_cast<int>(section.integer("max_hidden", 0, 12, tron.max_hidden));
+  tron.settle_limit_s = section.number("settle_limit_s", above_to(0.0, 600.0), tron.settle_limit_s);
+  tron.correct_above_mm = section.number("correct_above_mm", from_to(0.0, 1000.0), tron.correct_above_mm);
+  tron.correct_above_deg = section.number("correct_above_deg", from_to(0.0, 180.0), tron.correct_above_deg);
+  tron.fail_above_mm = section.number("fail_above_mm", above_to(0.0, 1000.0), tron.fail_above_mm);
+  tron.fail_above_deg = section.number("fail_above_deg", above_to(0.0, 180.0), tron.fail_above_deg);
+  tron.retries = static_cast<int>(section.integer("retries", 0, 20, tron.retries));
+  tron.packet_size = static_cast<int>(section.integer("packet_size", 576, 9000, tron.packet_size));
+  tron.timeout = std::chrono::milliseconds(section.integer("timeout_ms", 100, 600'000, tron.timeout.count()));
+  tron.operator_timeout =
+      std::chrono::seconds(section.integer("operator_timeout_s", 1, 100'000, tron.operator_timeout.count()));
+  section.finish();
+  return settings;
+}
+
+std::filesystem::path calibration_file(const TronSettings& settings, const std::filesystem::path& data_directory,
+                                       std::uint64_t seed) {
+  const std::string laboratory = replaced(settings.laboratory, data_directory, seed).string();
+  const std::filesystem::path folder = replaced(settings.calibration, data_directory, seed).parent_path();
+  std::string command = "vbar tron calibrate " + laboratory + " --seed {N} --out " + (folder / "").string();
+  if (!settings.bench.empty())
+    command += " --bench \"vbar_tron_bench {data}/benches/tron_emulated.toml --directory {directory} --seed {seed}\"";
+  return testbeds::find_calibration_file(
+      settings.calibration, data_directory, seed,
+      {"testbed.tron", command, "a quarter of an hour of one processor (half of it with --quick)"});
+}
+
+std::filesystem::path replaced(std::string path, const std::filesystem::path& data_directory, std::uint64_t seed) {
+  path = files::replaced(std::move(path), "{data}", data_directory.string());
+  return files::replaced(std::move(path), "{seed}", std::to_string(seed));
+}
+
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -74,7 +123,7 @@ TronRun::~TronRun() {
 
 std::unique_ptr<twins::camera::ImageTaker> TronRun::make_camera(const testbeds::CameraPlan& plan) {
   if (plan_) throw std::runtime_error("testbed tron: it has one camera, and " + plan.name + " is a second");
-  bench_ = read_bench_file(laboratory_file_);
+  bench_ = read_testbed_design(laboratory_file_);
   calibration_ = load_calibration(calibration_file_);
   if (calibration_.validity.bench != bench_.name)
     throw std::runtime_error(fmt::format("testbed tron: {} is a calibration of the bench \"{}\", not of \"{}\"",
@@ -126,9 +175,9 @@ void TronRun::open_devices() {
   devices.settle_limit_s = settings_.settle_limit_s;
   devices.operator_timeout_s = static_cast<double>(settings_.operator_timeout.count());
   devices.report = [](const std::string& text) { std::cerr << "testbed tron: " << text << '\n'; };
-  laboratory_ = std::make_unique<WiredLaboratory>(devices);
+  laboratory_ = std::make_unique<WiredDevices>(devices);
 
-  BenchAddresses addresses = addresses_of(bench_);
+  TestbedAddresses addresses = addresses_of(bench_);
   if (!settings_.bench.empty()) {
     process_.emplace(settings_.bench + laboratory_->port_options(), context_.mission.seed, data);
     addresses = read_addresses(process_->addresses_file());
@@ -284,5 +333,24 @@ void TronRun::finish() noexcept {
   }
   record_ = nullptr;
 }
+
+namespace {
+
+std::shared_ptr<testbeds::TestbedRun> open(const mission::TestbedSettings& settings,
+                                           const testbeds::RunContext& context) {
+  return std::make_shared<TronRun>(dynamic_cast<const TronSettings&>(settings), context);
+}
+
+testbeds::CalibratedCamera calibrated(const mission::TestbedSettings& settings, const mission::Mission& mission,
+                                      const std::filesystem::path& data_directory,
+                                      const twins::camera::CameraSettings& of_mission) {
+  const auto& own = dynamic_cast<const TronSettings&>(settings);
+  const Calibration calibration = load_calibration(calibration_file(own, data_directory, mission.seed));
+  return {calibrated_camera(calibration, of_mission), std::nullopt};
+}
+
+}  // namespace
+
+const testbeds::TestbedKind kTron{{"tron", read_tron}, open, {tables, summarise, sections}, calibrated};
 
 }  // namespace vbar::tron

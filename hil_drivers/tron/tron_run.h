@@ -1,26 +1,59 @@
 #pragma once
 // TRON during one run: calibration, emulator process, devices, planning, and the images taken.
 
+#include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "hil_drivers/bench_process/bench_process.h"
-#include "hil_drivers/testbed.h"
-#include "hil_drivers/tron/calibration_file/calibration.h"
-#include "hil_drivers/tron/exchange/image_exchange.h"
-#include "hil_drivers/tron/hardware/wired_laboratory.h"
-#include "hil_drivers/tron/image/image_finish.h"
+#include "hil_drivers/common/emulator_process.h"
+#include "hil_drivers/tron/geometry/calibration.h"
+#include "hil_drivers/tron/imaging/image_exchange.h"
+#include "hil_drivers/tron/imaging/image_finish.h"
+#include "hil_drivers/tron/laboratory.h"
 #include "hil_drivers/tron/lights/room_light.h"
-#include "hil_drivers/tron/planner/arm_planner.h"
-#include "hil_drivers/tron/settings.h"
-#include "hil_drivers/tron/tron_row.h"
+#include "hil_drivers/tron/motion_planning/arm_planner.h"
+#include "host_sim/mission/mission.h"
+#include "host_sim/mission/table_reader.h"
+#include "host_sim/sensors/testbed.h"
 
 namespace vbar::tron {
+
+// Section [testbed.tron] of a mission.
+
+struct TronSettings : mission::TestbedSettings {
+  std::string bench;                                    ///< command line of the emulator; empty: hardware
+  std::string laboratory = "{data}/benches/tron.toml";  ///< path of the bench file; {data} is replaced
+  std::string calibration;                              ///< path; {data} and {seed} are replaced
+  // Addresses; empty: for an emulator as its addresses.json states, by default as the bench file states.
+  std::string camera_address, camera_robot_address, target_robot_address, lights_address;
+  int trials = 400;             ///< placements tried for an image
+  int max_hidden = 3;           ///< largest number of keypoints and centre hidden, in an image that is taken
+  double settle_limit_s = 5.0;  ///< bench time for the arms to come to rest
+  double correct_above_mm = 0.5, correct_above_deg = 0.02;  ///< errors of a pose, which is then corrected once
+  double fail_above_mm = 5.0, fail_above_deg = 0.3;         ///< errors of a corrected pose
+  int retries = 3;                                          ///< tries of a trigger
+  int packet_size = 8000;
+  std::chrono::milliseconds timeout{3000};     ///< wall clock: of a device that does not answer
+  std::chrono::seconds operator_timeout{600};  ///< bench time: of a stop that the operator has to clear
+};
+
+/// Throws MissionError.
+std::shared_ptr<const mission::TestbedSettings> read_tron(const mission::TableReader& section);
+
+/// Returns the file of the calibration. Throws MissionError if there is none.
+[[nodiscard]] std::filesystem::path calibration_file(const TronSettings& settings,
+                                                     const std::filesystem::path& data_directory, std::uint64_t seed);
+
+/// Returns `path` with {data} and {seed} replaced.
+[[nodiscard]] std::filesystem::path replaced(std::string path, const std::filesystem::path& data_directory,
+                                             std::uint64_t seed);
 
 /// Returns the camera of the mission with the lens as calibrated, for the pixels of the mission, which are binned.
 [[nodiscard]] twins::camera::CameraSettings calibrated_camera(const Calibration& calibration,
@@ -54,15 +87,15 @@ class TronRun final : public testbeds::TestbedRun, public std::enable_shared_fro
   TronSettings settings_;
   testbeds::RunContext context_;
   std::filesystem::path laboratory_file_, calibration_file_;
-  BenchFile bench_;
+  TestbedDesign bench_;
   Calibration calibration_;
   std::optional<testbeds::CameraPlan> plan_;
   twins::camera::CameraSettings camera_;  ///< as calibrated
   double exposure_s_ = 0.0;               ///< in the laboratory
   std::string clock_;                     ///< clock of the testbed
 
-  std::optional<bench_process::BenchProcess> process_;
-  std::unique_ptr<WiredLaboratory> laboratory_;
+  std::optional<testbeds::EmulatorProcess> process_;
+  std::unique_ptr<WiredDevices> laboratory_;
   std::optional<ArmPlanner> planner_;
   std::optional<RoomLight> lights_;
   std::optional<ImageExchange> exchange_;
@@ -74,5 +107,24 @@ class TronRun final : public testbeds::TestbedRun, public std::enable_shared_fro
   mutable std::mutex mutex_;          // guards the rows, which take() adds
   std::vector<TronRow> rows_;
 };
+
+// Camera of the testbed as the image taker of a sensor.
+
+class TronCamera final : public twins::camera::ImageTaker {
+ public:
+  explicit TronCamera(std::shared_ptr<TronRun> run) : run_(std::move(run)) {}
+
+  void start(fsw::GpsTime /*first_epoch*/) override { run_->start(); }
+  void stop(twins::StopReason /*reason*/) override { run_->stop(); }
+  twins::camera::TakenImage take(const twins::camera::Exposure& exposure) override { return run_->take(exposure); }
+  [[nodiscard]] std::vector<twins::Note> statistics() const override { return run_->statistics(); }
+
+ private:
+  std::shared_ptr<TronRun> run_;
+};
+
+// TRON as a testbed of missions.
+
+extern const testbeds::TestbedKind kTron;
 
 }  // namespace vbar::tron

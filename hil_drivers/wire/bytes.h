@@ -7,6 +7,7 @@
 #include <concepts>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -92,5 +93,18 @@ class ByteReader {
 
 /// Bytes of unknown origin as they can stand in a message: printable characters, others as \xNN; at most 80 of them.
 std::string printable(std::string_view text);
+
+// Cuts a stream into lines that end with LF, CR or both; empty lines are skipped.
+
+class LineBuffer {
+ public:
+  void append(std::span<const std::uint8_t> bytes) { buffer_.insert(buffer_.end(), bytes.begin(), bytes.end()); }
+  /// Returns the next complete line. Throws WireError if more than 8192 characters arrive without a line end; they are
+  /// discarded.
+  std::optional<std::string> next();
+
+ private:
+  std::string buffer_;
+};
 
 }  // namespace vbar::wire

@@ -1,6 +1,5 @@
 #pragma once
-// A campaign file (TOML): a mission, seeds, sweeps, dispersions, pass criteria, what is kept, limits. docs/campaigns.md
-// explains its keys.
+// Values of mission keys as text: what stands after the '=' of --set and in a cell of cases.csv.
 
 #include <cstdint>
 #include <filesystem>
@@ -9,10 +8,21 @@
 #include <string_view>
 #include <vector>
 
+#include <toml++/toml.h>
+
 #include "host_sim/campaign/dispersion.h"
-#include "host_sim/mission/limit.h"
+#include "host_sim/mission/mission.h"
 
 namespace vbar::campaign {
+
+/// The shortest TOML number that is read as exactly this double, the same in every locale.
+[[nodiscard]] std::string text_of(double value);
+
+/// A TOML value that is read as `value`; a text that is a plain name stands without its quotes, as --set accepts it.
+[[nodiscard]] std::string text_of(const toml::node& value);
+
+// A campaign file (TOML): a mission, seeds, sweeps, dispersions, pass criteria, what is kept, limits. docs/campaigns.md
+// explains its keys.
 
 /// Keys that take the values of a row together; the rows are swept one after the other.
 struct Sweep {
@@ -63,5 +73,11 @@ struct CampaignFile {
 /// Throws MissionError that names place, key and what is accepted.
 [[nodiscard]] CampaignFile read_campaign_file(const std::filesystem::path& file);
 [[nodiscard]] CampaignFile parse_campaign(std::string_view text, const std::filesystem::path& file);
+
+// A sweep of a CSV table: a head of mission keys, then a row of values for each sweep point.
+
+/// `key` of `section` names the file. Throws MissionError that names file, line and what is accepted.
+[[nodiscard]] Sweep read_sweep_table(const mission::TableReader& section, std::string_view key,
+                                     const std::filesystem::path& file);
 
 }  // namespace vbar::campaign

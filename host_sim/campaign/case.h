@@ -1,6 +1,7 @@
 #pragma once
 // The cases of a campaign: one flight each, a function of the campaign file and the case's number alone.
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -28,5 +29,10 @@ struct Case {
 
 /// "000417": the name of the case's folder.
 [[nodiscard]] std::string name_of_case(std::size_t number);
+
+// "0-99,417": numbers of cases on the command line.
+
+/// Returns the numbers, sorted. Throws app::Refused unless all are below `cases`.
+[[nodiscard]] std::vector<std::size_t> selected_cases(const std::string& text, std::size_t cases);
 
 }  // namespace vbar::campaign

@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-#include "host_sim/campaign/folder.h"
+#include "host_sim/campaign/plan.h"
 
 namespace vbar::campaign {
 
@@ -31,5 +31,12 @@ void check_copies(const Folder& folder);
 /// Whether this process can fly a case as well as a process of the copied program: it runs the same program, and there
 /// is no flight image or library, which a program finds beside itself.
 [[nodiscard]] bool flies_as_the_copy(const Folder& folder);
+
+// Whether the flights of a campaign's folder would execute anything but this program. A folder may come from anywhere,
+// and the list of checksums in it with it.
+
+/// Throws app::Refused unless the folder is trusted, or its program, and what stands beside it, is that of this
+/// installation, and its mission names no library, image, device, address or testbed.
+void check_trust(const Folder& folder, const Plan& plan, const std::vector<Case>& cases, bool is_trusted);
 
 }  // namespace vbar::campaign

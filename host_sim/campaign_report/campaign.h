@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -65,5 +66,16 @@ struct Campaign {
 
 /// "over time"
 [[nodiscard]] std::string_view name_of(State state);
+
+// Reads what the page is made of.
+
+/// Reads campaign.json and results.csv. Throws std::runtime_error that names file, line, column or key and the accepted
+/// values: for a missing file, column or case, a case that occurs twice, a number that is not finite, and a case whose
+/// result contradicts the limits.
+[[nodiscard]] Campaign read_campaign(const std::filesystem::path& folder);
+
+/// The parts of it.
+[[nodiscard]] Campaign read_campaign_json(const std::filesystem::path& file, std::size_t& number_of_cases);
+void read_results(const std::filesystem::path& file, std::size_t number_of_cases, Campaign& campaign);
 
 }  // namespace vbar::campaign_report

@@ -1,4 +1,52 @@
 #pragma once
+// Wall-clock time, as the clock of a run sees it. Tests substitute their own; a testbed may substitute a
+// clock that follows its PPS edges.
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "fsw/core/gps_time.h"
+
+namespace vbar::engine {
+
+class WallClock {
+ public:
+  using Span = std::chrono::nanoseconds;
+
+  WallClock() = default;
+  WallClock(const WallClock&) = delete;
+  WallClock& operator=(const WallClock&) = delete;
+  virtual ~WallClock() = default;
+
+  /// Since an origin of the clock's own; monotonic.
+  virtual Span now() = 0;
+  /// Returns the start of the run, if it has been set (by a testbed); by default at once.
+  virtual Span start_of_run() { return now(); }
+  /// Returns at `wake` or later; at once if it has passed.
+  virtual void sleep_until(Span wake) = 0;
+};
+
+/// The computer's monotonic clock.
+class SteadyWallClock final : public WallClock {
+ public:
+  Span now() override;
+  void sleep_until(Span wake) override;
+};
+
+/// A source of time, by the name that missions use.
+struct WallClockSource {
+  std::string_view name;
+  /// `device`: the text after "<name>:" in the mission, possibly empty.
+  std::unique_ptr<WallClock> (*make)(std::string_view device);
+};
+
+extern const WallClockSource kMonotonicClock;  ///< "monotonic", SteadyWallClock
+
 // Simulated time against wall-clock time: lock-step (as fast as possible; simulated time waits for all parts) or real
 // time (paced by the wall clock, with a speed factor). The clock changes when events occur in wall-clock time, never
 // what happens: both modes and every speed factor give the same run.
@@ -9,15 +57,6 @@
 //   woke late         the operating system resumed this program later than requested
 //   simulation late   this program was still busy (truth, renderer, testbed) when the next step was due
 // A late step is not skipped: the schedule stays, and the run catches up.
-
-#include <cstdint>
-#include <functional>
-#include <optional>
-
-#include "fsw/core/gps_time.h"
-#include "host_sim/engine/wall_clock.h"
-
-namespace vbar::engine {
 
 enum class ClockMode { kLockStep, kRealTime };
 
@@ -83,6 +122,38 @@ class RunClock {
   WallClock::Span arrears_{0};  ///< lateness of the run when it was last recorded
   bool exchange_late_ = false;  ///< the last exchange exceeded a budget: the delay that it causes is recorded already
   DeadlineReport report_;
+};
+
+// Times of a periodic event whose period changes at given times: flight steps, images.
+
+/// A part begins at its own time; its epochs are one period after that, two periods, and so on, up to and including the
+/// beginning of the next part.
+class Cadence {
+ public:
+  struct Part {
+    fsw::GpsTime from;
+    fsw::Duration period;  ///< > 0
+    friend bool operator==(const Part&, const Part&) = default;
+  };
+
+  /// Throws std::invalid_argument without a part, and for parts that are not in order of time.
+  explicit Cadence(std::vector<Part> parts);
+  Cadence(fsw::GpsTime from, fsw::Duration period) : Cadence(std::vector<Part>{{from, period}}) {}
+
+  /// The first epoch later than `time`.
+  [[nodiscard]] fsw::GpsTime next_after(fsw::GpsTime time) const;
+  /// The first epoch at `time` or later.
+  [[nodiscard]] fsw::GpsTime next_at(fsw::GpsTime time) const { return next_after(time - fsw::Duration{1}); }
+  /// The number of epochs before `time`: the first epoch has number 0.
+  [[nodiscard]] std::int64_t number_of(fsw::GpsTime time) const;
+
+  [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
+  [[nodiscard]] fsw::Duration shortest_period() const;
+
+  friend bool operator==(const Cadence&, const Cadence&) = default;
+
+ private:
+  std::vector<Part> parts_;
 };
 
 }  // namespace vbar::engine

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "host_sim/engine/distributions.h"
+#include "host_sim/engine/random_stream.h"
 
 namespace vbar::engine {
 namespace {

@@ -10,9 +10,9 @@
 #include <fmt/format.h>
 
 #include "fsw/packets/messages.h"
-#include "host_sim/faults/fault_subject.h"
-#include "host_sim/faults/faulty_thruster.h"
-#include "host_sim/mission/names.h"
+#include "host_sim/faults/fault_injection.h"
+#include "host_sim/faults/fault_schedule.h"
+#include "host_sim/mission/mission.h"
 #include "host_sim/sensors/camera/camera_rows.h"
 
 namespace vbar::faults {
@@ -51,13 +51,13 @@ FaultLog::FaultLog(const mission::Mission& mission, const FaultSchedule& schedul
   }
 }
 
-void FaultLog::witness_effect(State& state, GpsTime time, const std::string& evidence) {
+void FaultLog::observe_effect(State& state, GpsTime time, const std::string& evidence) {
   ++state.witnessed;
   if (!state.effect_s) state.effect_s = fsw::seconds(time - mission_.epoch);
   state.evidence = evidence;
 }
 
-void FaultLog::witness_end(State& state, GpsTime time) {
+void FaultLog::observe_end(State& state, GpsTime time) {
   if (state.effect_s && !state.over) state.over = time;
 }
 
@@ -103,9 +103,9 @@ void FaultLog::on_step(std::uint32_t /*step*/, GpsTime time, std::span<const pil
       case FaultKind::kComputerSilent:
       case FaultKind::kComputerReboot:
         if (state.fault.has_begun(time) && outputs.empty()) {
-          witness_effect(state, time, fmt::format("{} steps without an answer", state.witnessed + 1));
+          observe_effect(state, time, fmt::format("{} steps without an answer", state.witnessed + 1));
         } else if (!state.fault.is_present(time) && !outputs.empty()) {
-          witness_end(state, time);
+          observe_end(state, time);
         }
         break;
     }
@@ -155,14 +155,14 @@ void FaultLog::look_at_receiver(State& state, GpsTime time) {
       if (state.fault.kind == FaultKind::kCycleSlip) look_for_slip(state, epoch, time);
       if (state.fault.kind == FaultKind::kClockJump && !state.over && epoch.clock_jump_s &&
           std::abs(*epoch.clock_jump_s - state.fault.value) < 0.2 * std::abs(state.fault.value)) {
-        witness_effect(state, time, fmt::format("pseudoranges jump by {:.3g} s", *epoch.clock_jump_s));
-        witness_end(state, time);
+        observe_effect(state, time, fmt::format("pseudoranges jump by {:.3g} s", *epoch.clock_jump_s));
+        observe_end(state, time);
       }
       // No carrier of before goes on.
       if (state.fault.kind == FaultKind::kReceiverReset && !state.over && epoch.known > 0 &&
           epoch.restarted == epoch.known) {
-        witness_effect(state, time, fmt::format("{} carriers, all locked again", epoch.carriers));
-        witness_end(state, time);
+        observe_effect(state, time, fmt::format("{} carriers, all locked again", epoch.carriers));
+        observe_end(state, time);
       }
     }
   }
@@ -183,7 +183,7 @@ void FaultLog::look_for_slip(State& state, const ReceiverEpoch& epoch, GpsTime t
   const bool is_seen = as_commanded == epoch.slips.size() && as_commanded > 0 &&
                        (is_of_all ? 2 * as_commanded > epoch.carriers : satellites.size() == 1);
   if (state.effect_s || !is_seen) return;
-  witness_effect(state, time,
+  observe_effect(state, time,
                  fmt::format("{} carriers of {} satellites jump, the first by {:.2f} cycles", as_commanded,
                              satellites.size(), epoch.slips.front().cycles));
   state.at_effect = carrier_phase_;
@@ -196,7 +196,7 @@ void FaultLog::look_for_reaction(State& state, GpsTime time) {
   const telemetry_gnss& then = *state.at_effect;
   const bool has_reacted = now.slips != then.slips || now.releases != then.releases ||
                            now.phases_refused != then.phases_refused || now.restarts != then.restarts;
-  if (has_reacted && now.fixed > 0) witness_end(state, time);
+  if (has_reacted && now.fixed > 0) observe_end(state, time);
 }
 
 /// Detects that a stream has been silent for more than two intervals.
@@ -206,9 +206,9 @@ void FaultLog::look_at_silence(State& state, GpsTime time) {
   if (stream == streams_.end() || time < state.fault.begin) return;
   const fsw::Duration silent = time - stream->second.last;
   if (state.fault.is_present(time) && silent > stream->second.interval + stream->second.interval) {
-    witness_effect(state, time, fmt::format("no packet for {:.0f} s", fsw::seconds(silent)));
+    observe_effect(state, time, fmt::format("no packet for {:.0f} s", fsw::seconds(silent)));
   } else if (!state.fault.is_present(time) && stream->second.last >= state.fault.begin + *state.fault.duration) {
-    witness_end(state, stream->second.last);
+    observe_end(state, stream->second.last);
   }
 }
 
@@ -220,9 +220,9 @@ void FaultLog::look_at_images(State& state, GpsTime time) {
   if (stream == streams_.end() || sums == image_sums_.end()) return;
   const bool is_same = sums->second[0] == sums->second[1];
   if (is_same && stream->second.last >= state.fault.begin) {
-    witness_effect(state, time, "two images in a row with the same pixels");
+    observe_effect(state, time, "two images in a row with the same pixels");
   } else if (!is_same && state.fault.duration && stream->second.last >= state.fault.begin + *state.fault.duration) {
-    witness_end(state, stream->second.last);
+    observe_end(state, stream->second.last);
   }
 }
 
@@ -242,9 +242,9 @@ void FaultLog::look_at_attitudes(State& state, GpsTime time, std::span<const pil
     const Eigen::Quaterniond q_eci_body = attitude.q_body_eci.conjugate() * since;
     const double error = q_eci_body.angularDistance(Eigen::Quaterniond(q[0], q[1], q[2], q[3]));
     const bool is_wrong = error > 0.5 * state.fault.value;
-    if (is_wrong) witness_effect(state, packet.value().header.time, fmt::format("off by {:.3f} deg", error / kDegree));
+    if (is_wrong) observe_effect(state, packet.value().header.time, fmt::format("off by {:.3f} deg", error / kDegree));
     if (!is_wrong && !state.fault.is_present(packet.value().header.time)) {
-      witness_end(state, packet.value().header.time);
+      observe_end(state, packet.value().header.time);
     }
   }
 }
@@ -254,20 +254,20 @@ void FaultLog::on_execution(GpsTime time, const executed_maneuver& executed) {
   for (State& state : states_) {
     const bool is_uncommanded = executed.maneuver_id >= kFirstUncommanded;
     if (state.fault.kind == FaultKind::kThrustUncommanded && is_uncommanded && state.fault.is_present(time)) {
-      witness_effect(state, time, fmt::format("{} impulses, the last of {:.3g} mm/s", state.witnessed + 1, 1e3 * dv));
+      observe_effect(state, time, fmt::format("{} impulses, the last of {:.3g} mm/s", state.witnessed + 1, 1e3 * dv));
     }
     if (state.fault.kind == FaultKind::kThrustUncommanded && !is_uncommanded && !state.fault.is_present(time) &&
         time > state.fault.begin) {
-      witness_end(state, time);
+      observe_end(state, time);
     }
     const auto commanded = commanded_dv_.find(executed.maneuver_id);
     if (state.fault.kind != FaultKind::kThrustScale || commanded == commanded_dv_.end()) continue;
     const double ratio = dv / commanded->second;
     const bool is_off = std::abs(ratio - 1.0) > 0.5 * std::abs(state.fault.value - 1.0);
     if (is_off && state.fault.is_present(time)) {
-      witness_effect(state, time, fmt::format("{} burns, the last at {:.3f} of its size", state.witnessed + 1, ratio));
+      observe_effect(state, time, fmt::format("{} burns, the last at {:.3f} of its size", state.witnessed + 1, ratio));
     }
-    if (!is_off && time > state.fault.begin && !state.fault.is_present(time)) witness_end(state, time);
+    if (!is_off && time > state.fault.begin && !state.fault.is_present(time)) observe_end(state, time);
   }
 }
 
@@ -278,9 +278,9 @@ void FaultLog::look_at_poses(State& state) {
     if (!pose.pnp_error_deg || time < state.fault.begin) continue;
     const bool is_off = *pose.pnp_error_deg > 0.5 * state.fault.value / kDegree;
     if (is_off && state.fault.is_present(time)) {
-      witness_effect(state, time, fmt::format("pose off by {:.0f} deg", *pose.pnp_error_deg));
+      observe_effect(state, time, fmt::format("pose off by {:.0f} deg", *pose.pnp_error_deg));
     } else if (!is_off && !state.fault.is_present(time)) {
-      witness_end(state, time);
+      observe_end(state, time);
     }
   }
 }

@@ -9,11 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/app/run_observer.h"
-#include "host_sim/faults/aid_watch.h"
+#include "host_sim/faults/fault_observers.h"
 #include "host_sim/faults/fault_schedule.h"
-#include "host_sim/faults/fault_subject.h"
-#include "host_sim/faults/receiver_witness.h"
+#include "host_sim/faults/run_observer.h"
 #include "host_sim/mission/mission.h"
 #include "host_sim/report/run_record.h"
 
@@ -49,8 +47,8 @@ class FaultLog final : public app::RunObserver {
     fsw::Duration interval{0};
   };
 
-  void witness_effect(State& state, fsw::GpsTime time, const std::string& evidence);
-  void witness_end(State& state, fsw::GpsTime time);
+  void observe_effect(State& state, fsw::GpsTime time, const std::string& evidence);
+  void observe_end(State& state, fsw::GpsTime time);
   void look_at_packets(fsw::GpsTime time, std::span<const pil::Packet> inputs);
   void look_at_silence(State& state, fsw::GpsTime time);
   void look_at_poses(State& state);
@@ -72,7 +70,7 @@ class FaultLog final : public app::RunObserver {
   /// Last and present sum of each camera.
   std::map<std::uint8_t, std::array<std::uint64_t, 2>> image_sums_;
   std::map<std::int32_t, double> commanded_dv_;
-  std::map<fsw::packets::Apid, ReceiverWitness> receivers_;
+  std::map<fsw::packets::Apid, ReceiverObserver> receivers_;
   std::map<fsw::packets::Apid, std::vector<ReceiverEpoch>> epochs_;  ///< epochs of the present step
   std::optional<telemetry_gnss> carrier_phase_;                      ///< the last one
   AidWatch aids_;

@@ -1,14 +1,29 @@
 #pragma once
-// Start of each fault of the scenario: at its time, or once its event has happened. Events are those of the truth, the
-// thruster and the packets that the flight computer sent; they are the same in every run with the same bits.
+// Subject of a fault: packets, and measurement sources of navigation.
 
+#include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "host_sim/app/run_observer.h"
+#include "fsw/packets/messages.h"
+#include "host_sim/faults/run_observer.h"
 #include "host_sim/mission/mission.h"
 
 namespace vbar::faults {
+
+/// Kind and header unit of packets.
+using StreamKey = std::pair<fsw::packets::Apid, std::uint8_t>;
+
+/// The packets of the sensor concerned; empty if there is none.
+[[nodiscard]] std::optional<StreamKey> stream_of(const mission::Mission& mission, const mission::Fault& fault);
+
+/// The sources of navigation that a fault concerns: a sum of navigation_configuration::kUse.
+[[nodiscard]] std::int32_t aids_concerned(const mission::Mission& mission, const mission::Fault& fault);
+
+// Start of each fault of the scenario: at its time, or once its event has happened. Events are those of the truth, the
+// thruster and the packets that the flight computer sent; they are the same in every run with the same bits.
 
 class FaultSchedule final : public app::RunObserver {
  public:

@@ -1,14 +1,43 @@
 #pragma once
-// The data files that a run reads. Each is read completely here, so that the parsed bytes are those recorded in the
-// run's provenance, and a file that differs from the checksums of its data directory is rejected.
+// SHA-256 of bytes and of files.
 
+#include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
 #include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace vbar::files {
+
+class Sha256 {
+ public:
+  Sha256();
+  ~Sha256();
+  Sha256(Sha256&&) noexcept;
+  Sha256& operator=(Sha256&&) noexcept;
+
+  void add(std::span<const std::uint8_t> bytes);
+  void add(std::string_view bytes);
+
+  /// Returns the hash of all bytes so far, 64 lower-case hexadecimal digits; more bytes may follow.
+  [[nodiscard]] std::string hexadecimal() const;
+
+ private:
+  struct Context;
+  std::unique_ptr<Context> context_;
+};
+
+[[nodiscard]] std::string sha256_of(std::string_view bytes);
+
+/// Returns an empty value if the file cannot be read.
+[[nodiscard]] std::optional<std::string> sha256_of_file(const std::filesystem::path& file);
+
+// The data files that a run reads. Each is read completely here, so that the parsed bytes are those recorded in the
+// run's provenance, and a file that differs from the checksums of its data directory is rejected.
 
 struct FileRead {
   std::filesystem::path file;

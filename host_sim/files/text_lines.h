@@ -1,6 +1,4 @@
 #pragma once
-// Text of a data file line by line, in columns or words, with errors that name file, line, what was found and what is
-// accepted: the base of the readers of published formats.
 
 #include <cstddef>
 #include <optional>
@@ -10,6 +8,26 @@
 #include <vector>
 
 namespace vbar::files {
+
+/// `text` with every `what`, which is not empty, in it replaced.
+[[nodiscard]] inline std::string replaced(std::string text, std::string_view what, std::string_view by) {
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
+    text.replace(at, what.size(), by);
+  return text;
+}
+
+// Text of a data file as its producer distributes it: compressed by gzip, with a byte order mark, or not text at all.
+
+/// Bytes of a decompressed text: twice the largest gravity model that is published (degree 2190).
+inline constexpr std::size_t kLargestText = std::size_t{1} << 29;
+
+/// The text in `contents`, those of `file`: gzip streams are decompressed, a byte order mark of UTF-8 is dropped.
+/// Throws std::runtime_error that names the file and what was found, for a gzip stream that is damaged, cut short or
+/// longer than `largest` bytes, for other compressions, and for contents that are not text.
+[[nodiscard]] std::string plain_text(std::string contents, const std::string& file, std::size_t largest = kLargestText);
+
+// Text of a data file line by line, in columns or words, with errors that name file, line, what was found and what is
+// accepted: the base of the readers of published formats.
 
 /// what() is "file:line: found ..., expected ...".
 class FormatError : public std::runtime_error {

@@ -8,14 +8,39 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/serial_port.hpp>
+#include <fcntl.h>
 #include <poll.h>
 #include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
 
-#include "host_sim/io/raw_terminal.h"
+#include "host_sim/io/byte_channel.h"
 
 namespace vbar::io {
+
+void set_raw(int terminal, const std::string& description) {
+  const auto fail = [&] { throw ChannelError(description + ": " + std::strerror(errno)); };
+  termios settings{};
+  if (::tcgetattr(terminal, &settings) != 0) fail();
+  ::cfmakeraw(&settings);
+  settings.c_cflag |= CLOCAL | CREAD;
+  settings.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | CSTOPB);
+  if (::tcsetattr(terminal, TCSANOW, &settings) != 0) fail();
+}
+
+bool TerminalQueue::is_empty() {
+  if (device_.empty()) return true;
+  if (terminal_.get() < 0)
+    terminal_ = FileDescriptor(::open(device_.c_str(), O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  if (terminal_.get() < 0) return true;
+  // Not FIONREAD: poll also moves what the kernel has not yet passed on to the terminal's queue.
+  pollfd request{.fd = terminal_.get(), .events = POLLIN, .revents = 0};
+  if (::poll(&request, 1, 0) <= 0) return true;
+  const bool is_hung_up = (request.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0;
+  if (is_hung_up) terminal_.reset();
+  return is_hung_up;
+}
+
 namespace {
 
 namespace asio = boost::asio;

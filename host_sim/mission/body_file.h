@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/truth/attitude/body.h"
-#include "host_sim/twins/camera/model/cad_source.h"
+#include "host_sim/truth/attitude/torques.h"
+#include "host_sim/twins/camera/model/cad_model.h"
 
 namespace vbar::mission {
 

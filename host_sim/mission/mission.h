@@ -1,31 +1,48 @@
 #pragma once
-// A mission file's content, checked and in SI units: plain structs. The meaning of each key, its default and its range
-// are in the functions that read it (read_*.cpp) and, by example, in missions/ideal_navigation.toml.
+// [[limit]] of a mission, and [[pass]] of a campaign: what a number of the summary must keep.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
+
+#include <vbar/fields.h>
 
 #include "fsw/core/gps_time.h"
 #include "fsw/orbit/elements.h"
 #include "fsw/packets/messages.h"
-#include "host_sim/engine/cadence.h"
 #include "host_sim/engine/clock.h"
 #include "host_sim/engine/link_model.h"
 #include "host_sim/mission/attitude.h"
-#include "host_sim/mission/limit.h"
-#include "host_sim/mission/named_file.h"
+#include "host_sim/mission/mission_error.h"
 #include "host_sim/truth/truth_settings.h"
 
 namespace vbar::mission {
+
+/// Limits the number with a dotted key of the summary, e.g. waypoints.10.navigation_error_m. At least one of both
+/// bounds is stated.
+struct Limit {
+  std::string key;
+  std::optional<double> most, least;
+};
+
+/// Returns the limits of a mission file, of the files that it extends, and of the overrides, "path=value". Nothing else
+/// of the mission is read or checked. Throws MissionError.
+[[nodiscard]] std::vector<Limit> load_limits(const std::filesystem::path& file, std::span<const std::string> overrides);
+
+// A mission file's content, checked and in SI units: plain structs. The meaning of each key, its default and its range
+// are in the functions that read it (read_*.cpp) and, by example, in missions/ideal_navigation.toml.
 
 inline constexpr std::string_view kTruthModel = "model";  ///< source of the truth: vbar's truth model
 
@@ -321,5 +338,77 @@ template <class Settings>
 [[nodiscard]] std::string_view name_of(FaultKind kind);
 [[nodiscard]] std::string_view name_of(FlightTarget target);
 [[nodiscard]] std::string_view name_of(FlightLink link);
+
+// The names of the enumerations in mission files, summaries and messages: one list each.
+
+template <class Enum, std::size_t N>
+using Names = std::array<std::pair<std::string_view, Enum>, N>;
+
+inline constexpr Names<ElementsKind, 2> kElementsKinds{
+    {{"osculating", ElementsKind::kOsculating}, {"mean", ElementsKind::kMean}}};
+inline constexpr Names<FlightTarget, 5> kFlightTargets{{{"in_process", FlightTarget::kInProcess},
+                                                        {"host_process", FlightTarget::kHostProcess},
+                                                        {"zynq_qemu", FlightTarget::kZynqQemu},
+                                                        {"zynq_linux_qemu", FlightTarget::kZynqLinuxQemu},
+                                                        {"board", FlightTarget::kBoard}}};
+inline constexpr Names<FlightLink, 2> kFlightLinks{{{"serial", FlightLink::kSerial}, {"udp", FlightLink::kUdp}}};
+/// The words of waypoint.kSolver in vbar.lcm, without none.
+inline constexpr auto kSolvers = [] {
+  Names<Solver, std::size(codes::waypoint_kSolver) - 1> names{};
+  std::size_t count = 0;
+  for (const Code& code : codes::waypoint_kSolver)
+    if (code.value != waypoint::kSolverNone) names[count++] = {code.word, static_cast<Solver>(code.value)};
+  return names;
+}();
+inline constexpr Names<Mode, 5> kModes{{{"idle", Mode::kIdle},
+                                        {"approach", Mode::kApproach},
+                                        {"station_keeping", Mode::kStationKeeping},
+                                        {"hold", Mode::kHold},
+                                        {"retreat", Mode::kRetreat}}};
+inline constexpr Names<FaultKind, 12> kFaultKinds{{{"silent", FaultKind::kSilent},
+                                                   {"frozen", FaultKind::kFrozen},
+                                                   {"receiver_silent", FaultKind::kReceiverSilent},
+                                                   {"target_turned", FaultKind::kTargetTurned},
+                                                   {"attitude_error", FaultKind::kAttitudeError},
+                                                   {"thrust_scale", FaultKind::kThrustScale},
+                                                   {"thrust_uncommanded", FaultKind::kThrustUncommanded},
+                                                   {"computer_silent", FaultKind::kComputerSilent},
+                                                   {"computer_reboot", FaultKind::kComputerReboot},
+                                                   {"cycle_slip", FaultKind::kCycleSlip},
+                                                   {"clock_jump", FaultKind::kClockJump},
+                                                   {"receiver_reset", FaultKind::kReceiverReset}}};
+inline constexpr Names<Apriori, 3> kAprioris{
+    {{"none", Apriori::kNone}, {"orbit", Apriori::kOrbit}, {"roe", Apriori::kRoe}}};
+inline constexpr Names<ImagesInLog, 2> kImagesInLog{
+    {{"recipes", ImagesInLog::kRecipes}, {"tiles", ImagesInLog::kTiles}}};
+inline constexpr Names<engine::ClockMode, 2> kClockModes{
+    {{"lock_step", engine::ClockMode::kLockStep}, {"real_time", engine::ClockMode::kRealTime}}};
+inline constexpr Names<engine::LatencyKind, 4> kLatencyKinds{{{"constant", engine::LatencyKind::kConstant},
+                                                              {"uniform", engine::LatencyKind::kUniform},
+                                                              {"normal", engine::LatencyKind::kNormal},
+                                                              {"exponential", engine::LatencyKind::kExponential}}};
+
+inline constexpr Names<truth::GeomagneticIndex, 2> kGeomagneticIndices{
+    {{"daily", truth::GeomagneticIndex::kDaily}, {"three_hourly", truth::GeomagneticIndex::kThreeHourly}}};
+inline constexpr Names<truth::Shadow, 3> kShadows{{{"none", truth::Shadow::kNone},
+                                                   {"cylindrical", truth::Shadow::kCylindrical},
+                                                   {"conical", truth::Shadow::kConical}}};
+
+/// Returns the name of an enumerator; empty for an invalid value.
+template <class Enum, std::size_t N>
+constexpr std::string_view name_in(const Names<Enum, N>& names, Enum value) {
+  for (const auto& [name, candidate] : names)
+    if (candidate == value) return name;
+  return {};
+}
+
+// Initial telecommands of a mission to its flight software that do not depend on its sensors, as messages of the packet
+// contract. (The parameters of guidance are such a message in the mission.)
+
+/// Returns all waypoints of the mission, including those that have passed at the start, which the flight software
+/// skips. A mission has at most kMaxWaypoints of them (checked by the loader).
+[[nodiscard]] vbar::waypoint_table waypoint_table_of(const Mission& mission);
+
+[[nodiscard]] vbar::mode_command mode_command_of(const Mission& mission);
 
 }  // namespace vbar::mission

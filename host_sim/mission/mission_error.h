@@ -1,6 +1,7 @@
 #pragma once
 // The one message for an invalid mission file.
 
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 
@@ -14,6 +15,15 @@ class MissionError : public std::runtime_error {
   MissionError(const std::string& where, const std::string& key, const std::string& found, const std::string& accepted)
       : std::runtime_error(where + ": " + (key.empty() ? "" : key + ": ") + "found " + found +
                            "; accepted: " + accepted) {}
+};
+
+// A data file as a mission names it.
+
+struct NamedFile {
+  std::string where;           ///< "file:line" or "--set path=value"
+  std::string key;             ///< dotted path
+  std::string text;            ///< the value
+  std::filesystem::path file;  ///< absolute, or in the data folder
 };
 
 }  // namespace vbar::mission

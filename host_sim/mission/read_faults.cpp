@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-#include "host_sim/mission/names.h"
+#include "host_sim/mission/mission.h"
 #include "host_sim/mission/read_sections.h"
 
 namespace vbar::mission {

@@ -1,10 +1,111 @@
 #include <algorithm>
+#include <array>
+#include <limits>
+#include <set>
 #include <stdexcept>
+#include <string_view>
 
-#include "host_sim/mission/names.h"
+#include "host_sim/mission/data_file.h"
+#include "host_sim/mission/mission.h"
+#include "host_sim/mission/mission_document.h"
 #include "host_sim/mission/read_sections.h"
+#include "host_sim/mission/sensor_reader.h"
+#include "host_sim/mission/toml_file.h"
+#include "host_sim/truth/earth/time_scales.h"
 
 namespace vbar::mission {
+
+namespace {
+
+fsw::GpsTime read_epoch(const TableReader& section) {
+  // Default: the paper's initial epoch.
+  const std::string text = section.text("epoch_utc", "2011-07-18T01:00:00Z");
+  try {
+    return truth::gps_from_utc(text);
+  } catch (const std::invalid_argument&) {
+    section.refuse_value("epoch_utc", "a UTC time like 2011-07-18T01:00:00Z, from 1980-01-06 to the year 2200");
+  }
+}
+
+}  // namespace
+
+void read_general(const TableReader& document, Mission& mission) {
+  const TableReader section = document.table("mission");
+  mission.name = section.name("name", name_of_file(mission.file));
+  mission.description = section.text("description", "");
+  mission.epoch = read_epoch(section);
+  mission.start = section.span("start_h", kHour_s, from_to(0.0, kLongestMission_h), 0.0);
+  mission.duration = section.span("duration_h", kHour_s, above_to(0.0, kLongestMission_h));
+  mission.step = read_cadence(section, "step_s", from_to(1e-3, 3600.0), mission, fsw::duration_of_seconds(60));
+  if (mission.step.parts().front().from > mission.start_time())
+    section.refuse_value("step_s", "a first period that holds from the start of the mission on");
+  constexpr std::int64_t kLargestSeed = std::numeric_limits<std::int64_t>::max();
+  mission.seed = static_cast<std::uint64_t>(section.integer("seed", 0, kLargestSeed, 1));
+  section.finish();
+}
+
+namespace {
+
+/// A force that acts if its key is true; the default is the truth model of the paper.
+truth::ForceModel read_forces(const TableReader& section) {
+  truth::ForceModel forces;
+  forces.drag = section.flag("drag", forces.drag);
+  forces.geomagnetic_index =
+      section.choice<truth::GeomagneticIndex>("geomagnetic_index", kGeomagneticIndices, forces.geomagnetic_index);
+  forces.radiation_pressure = section.flag("radiation_pressure", forces.radiation_pressure);
+  forces.shadow = section.choice<truth::Shadow>("shadow", kShadows, forces.shadow);
+  forces.sun = section.flag("sun", forces.sun);
+  forces.moon = section.flag("moon", forces.moon);
+  forces.solid_tides = section.flag("solid_tides", forces.solid_tides);
+  forces.relativity = section.flag("relativity", forces.relativity);
+  return forces;
+}
+
+/// The truth model, or a testbed of the mission that supplies the truth.
+std::string read_truth_source(const TableReader& section, const TableReader& document,
+                              const Installation& installation) {
+  std::vector<std::string_view> accepted{kTruthModel};
+  for (const TestbedReader* const testbed : installation.testbeds)
+    if (testbed->supplies_truth) accepted.push_back(testbed->name);
+  const std::string source = section.choice("source", accepted, kTruthModel);
+  if (source != kTruthModel && !document.table("testbed").has(source))
+    section.refuse_value("source", "model, as the mission has no [testbed." + source + "]");
+  return source;
+}
+
+}  // namespace
+
+void read_truth(const TableReader& document, Mission& mission, const Installation& installation) {
+  const TableReader section = document.table("truth");
+  mission.truth_source = read_truth_source(section, document, installation);
+  truth::TruthSettings& truth = mission.truth;
+  truth.epoch = mission.epoch;
+  truth.end = mission.end_time();
+  // The degree of the gravity file is checked when it is read; 2190 is the degree of the largest ever published.
+  truth.gravity_degree = static_cast<int>(section.integer("gravity_degree", 0, 2190, truth.gravity_degree));
+  const int order = std::min(truth.gravity_order, truth.gravity_degree);
+  truth.gravity_order = static_cast<int>(section.integer("gravity_order", 0, truth.gravity_degree, order));
+  truth.forces = read_forces(section);
+  truth.permanent_tide = section.flag("permanent_tide", truth.permanent_tide);
+  if (truth.forces.solid_tides && !truth.permanent_tide)
+    section.refuse_value("permanent_tide", "true, as truth.solid_tides contains the permanent tide");
+  truth.tolerance = section.number(
+      "relative_tolerance", from_to(truth::TruthSettings::kSmallestTolerance, truth::TruthSettings::kLargestTolerance),
+      truth.tolerance);
+  truth.threads = static_cast<int>(section.integer("threads", 1, 256, truth.threads));
+  using Settings = truth::TruthSettings;
+  constexpr std::array<std::string_view, 2> kOrientationWords{Settings::kBundled, Settings::kNone};
+  constexpr std::array<std::string_view, 2> kWeatherWords{Settings::kBundled, Settings::kConstant};
+  truth.gravity_file = data_file(section, "gravity_file", truth.gravity_file, mission);
+  truth.earth_orientation_file =
+      data_file(section, "earth_orientation_file", truth.earth_orientation_file, mission, kOrientationWords);
+  truth.space_weather_file = data_file(section, "space_weather_file", truth.space_weather_file, mission, kWeatherWords);
+  truth.constant_f107 = section.number("constant_f107", from_to(50.0, 400.0), truth.constant_f107);
+  truth.constant_ap = section.number("constant_ap", from_to(0.0, 400.0), truth.constant_ap);
+  truth.accept_predictions = section.flag("accept_predictions", truth.accept_predictions);
+  section.finish();
+}
+
 namespace {
 
 using engine::LatencyDistribution;
@@ -173,6 +274,46 @@ void read_record(const TableReader& document, Mission& mission) {
   mission.record.tables = section.flag("tables", true);
   read_samples(section, mission);
   section.finish();
+}
+
+namespace {
+
+constexpr double kLargest = 1e300;
+
+std::vector<Limit> limits_of(const TableReader& document) {
+  std::vector<Limit> limits;
+  std::set<std::string> keys;
+  for (const TableReader& section : document.tables("limit")) {
+    limits.push_back(read_limit(section));
+    if (!keys.insert(limits.back().key).second)
+      section.refuse_value("key", "a key that no other limit has: one limit holds both most and least");
+  }
+  return limits;
+}
+
+}  // namespace
+
+Limit read_limit(const TableReader& section) {
+  Limit limit;
+  limit.key = section.text("key");
+  if (section.has("most")) limit.most = section.number("most", from_to(-kLargest, kLargest));
+  if (section.has("least")) limit.least = section.number("least", from_to(-kLargest, kLargest));
+  if (!limit.most && !limit.least) section.refuse("", "neither most nor least", "at least one of them");
+  section.finish();
+  if (limit.most && limit.least && *limit.least > *limit.most)
+    section.refuse_value("least", "a number that is not above most");
+  return limit;
+}
+
+void read_limits(const TableReader& document, Mission& mission) {
+  mission.limits = limits_of(document);
+}
+
+std::vector<Limit> load_limits(const std::filesystem::path& file, std::span<const std::string> overrides) {
+  toml::table table = parse_toml(read_text_file(file, "a mission file (TOML)"), file.string());
+  put_over_extended(table, file);
+  for (const std::string& assignment : overrides) apply_override(table, assignment);
+  return limits_of(TableReader(table, file.string()));
 }
 
 }  // namespace vbar::mission

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "host_sim/mission/mission_error.h"
-#include "host_sim/mission/nearest_name.h"
+#include "host_sim/mission/name_search.h"
 
 namespace vbar::mission {
 namespace {

@@ -15,7 +15,7 @@
 #include <toml++/toml.h>
 
 #include "fsw/core/gps_time.h"
-#include "host_sim/mission/named_file.h"
+#include "host_sim/mission/mission_error.h"
 
 namespace vbar::mission {
 
@@ -196,5 +196,15 @@ inline constexpr std::string_view kNameRule = "a name of 1 to 64 letters, digits
 
 /// Returns names as a list in words: "a, b or c".
 [[nodiscard]] std::string listing_of(const std::vector<std::string_view>& names);
+
+// Keys whose default is the value that the settings were made with.
+
+inline void read(const TableReader& section, std::string_view key, Range range, double& value) {
+  value = section.number(key, range, value);
+}
+
+inline void read(const TableReader& section, std::string_view key, int low, int high, int& value) {
+  value = static_cast<int>(section.integer(key, low, high, value));
+}
 
 }  // namespace vbar::mission

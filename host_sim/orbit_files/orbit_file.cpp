@@ -2,17 +2,22 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
+#include <span>
 #include <stdexcept>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "fsw/orbit/constants.h"
 #include "host_sim/files/data_stream.h"
 #include "host_sim/files/text_lines.h"
-#include "host_sim/orbit_files/interpolation.h"
 #include "host_sim/truth/earth/time_scales.h"
 
 namespace vbar::orbit_files {
+
 namespace {
 
 bool is_named(const Track& track, std::string_view object) {
@@ -85,6 +90,205 @@ FramedState state_at(const OrbitFile& file, fsw::GpsTime time) {
   throw std::out_of_range(fmt::format("{}: no state of {} at {}; its states reach from {} to {}", file.file,
                                       first.object, text_of(time), text_of(first.states.front().time),
                                       text_of(last.states.back().time)));
+}
+
+namespace {
+
+using fsw::Vector3;
+using fsw::orbit::CartesianState;
+using States = std::span<const TimedState>;
+
+constexpr InterpolationRule kOfStates{Polynomial::kHermite, 7}, kOfPositions{Polynomial::kLagrange, 9};
+constexpr std::size_t kMinPositions = 6;
+
+/// Newton's divided differences: nodes may occur twice, with a derivative.
+struct Newton {
+  std::vector<double> nodes_s;
+  std::vector<Vector3> coefficients;
+
+  struct Value {
+    Vector3 value, derivative;
+  };
+  /// By Horner's scheme, at time 0.
+  [[nodiscard]] Value at_origin() const {
+    Value at{coefficients.back(), Vector3::Zero()};
+    for (std::size_t k = coefficients.size() - 1; k-- > 0;) {
+      at.derivative = at.value - at.derivative * nodes_s[k];
+      at.value = coefficients[k] - at.value * nodes_s[k];
+    }
+    return at;
+  }
+};
+
+/// `derivatives`: empty, or one for each value.
+Newton polynomial_through(const std::vector<double>& times_s, const std::vector<Vector3>& values,
+                          const std::vector<Vector3>& derivatives) {
+  const std::size_t copies = derivatives.empty() ? 1 : 2;
+  Newton newton;
+  std::vector<Vector3> column;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    newton.nodes_s.insert(newton.nodes_s.end(), copies, times_s[k]);
+    column.insert(column.end(), copies, values[k]);
+  }
+  newton.coefficients.push_back(column.front());
+  for (std::size_t order = 1; order < newton.nodes_s.size(); ++order) {
+    for (std::size_t k = 0; k + order < newton.nodes_s.size(); ++k) {
+      const double width_s = newton.nodes_s[k + order] - newton.nodes_s[k];
+      column[k] = width_s == 0.0 ? derivatives[k / copies] : Vector3((column[k + 1] - column[k]) / width_s);
+    }
+    newton.coefficients.push_back(column.front());
+  }
+  return newton;
+}
+
+CartesianState by_polynomial(States nodes, fsw::GpsTime time, Polynomial polynomial, bool has_velocities) {
+  std::vector<double> times_s;
+  std::vector<Vector3> positions, velocities;
+  for (const TimedState& node : nodes) {
+    times_s.push_back(fsw::seconds(node.time - time));
+    positions.push_back(node.state.position_eci);
+    velocities.push_back(node.state.velocity_eci);
+  }
+  const bool is_hermite = polynomial == Polynomial::kHermite;
+  const Newton::Value at =
+      polynomial_through(times_s, positions, is_hermite ? velocities : std::vector<Vector3>()).at_origin();
+  const bool has_own = has_velocities && !is_hermite;
+  CartesianState state;
+  state.position_eci = at.value;
+  state.velocity_eci = has_own ? polynomial_through(times_s, velocities, {}).at_origin().value : at.derivative;
+  return state;
+}
+
+std::size_t node_count(const InterpolationRule& rule) {
+  const auto degree = static_cast<std::size_t>(rule.degree);
+  return rule.polynomial == Polynomial::kHermite ? degree / 2 + 1 : degree + 1;
+}
+
+/// Index of the first state behind `time`.
+std::size_t place_of(States states, fsw::GpsTime time) {
+  return static_cast<std::size_t>(std::ranges::upper_bound(states, time, {}, &TimedState::time) - states.begin());
+}
+
+/// The `count` states about `time`, fewer if there are fewer.
+States states_about(States states, fsw::GpsTime time, std::size_t count) {
+  count = std::min(count, states.size());
+  const std::size_t place = place_of(states, time);
+  const std::size_t begin = place < count / 2 ? 0 : std::min(place - count / 2, states.size() - count);
+  return states.subspan(begin, count);
+}
+
+double step_s(States states, std::size_t k) {
+  return fsw::seconds(states[k + 1].time - states[k].time);
+}
+
+/// Whether states are missing between `k` and the next one. Files of even steps state them; in others the longer one of
+/// the steps beside it decides.
+bool is_gap(const Track& track, std::size_t k) {
+  constexpr double kLongest = 2.0;  // the steps of an orbit of any eccentricity change less from one to the next
+  const States states(track.states);
+  const double step = step_s(states, k);
+  if (track.largest_step_s > 0.0) return step > track.largest_step_s;
+  double beside = 0.0;
+  if (k > 0) beside = step_s(states, k - 1);
+  if (k + 2 < states.size()) beside = std::max(beside, step_s(states, k + 1));
+  return beside > 0.0 && step > kLongest * beside;
+}
+
+/// The states about `place` up to the next gap in either direction; `place` is not behind one.
+States without_gap(const Track& track, std::size_t place) {
+  std::size_t begin = place - 1, end = place;
+  while (begin > 0 && !is_gap(track, begin - 1)) --begin;
+  while (end < track.states.size() && !is_gap(track, end - 1)) ++end;
+  return States(track.states).subspan(begin, end - begin);
+}
+
+/// |w| of the nodes (orbit_file.h), as a logarithm: far nodes overflow nothing.
+double log_node_product(States nodes, fsw::GpsTime time, Polynomial polynomial) {
+  double sum = 0.0;
+  for (const TimedState& node : nodes) sum += std::log(std::abs(fsw::seconds(node.time - time)));
+  return polynomial == Polynomial::kHermite ? 2.0 * sum : sum;
+}
+
+/// Largest errors of the positions and the velocities of states left out and found again.
+struct Bound {
+  double position_m = 0.0, velocity_mps = 0.0;
+};
+
+/// `states`: without a gap, at least three; `nodes`: those of them that interpolate at `time`.
+Bound leave_one_out(States states, States nodes, fsw::GpsTime time, const InterpolationRule& rule,
+                    bool has_velocities) {
+  Bound bound;
+  const double log_w = log_node_product(nodes, time, rule.polynomial);
+  for (const TimedState& omitted : nodes) {
+    if (&omitted == &states.front() || &omitted == &states.back()) continue;  // that would be an extrapolation
+    const auto place = static_cast<std::size_t>(&omitted - states.data());
+    const std::size_t reach = node_count(rule) + 1, begin = place > reach ? place - reach : 0;
+    std::vector<TimedState> others(
+        states.begin() + static_cast<std::ptrdiff_t>(begin),
+        states.begin() + static_cast<std::ptrdiff_t>(std::min(place + reach, states.size())));
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(place - begin));
+    const States used = states_about(others, omitted.time, node_count(rule));
+    const CartesianState found = by_polynomial(used, omitted.time, rule.polynomial, has_velocities);
+    const double log_ratio = log_w - log_node_product(used, omitted.time, rule.polynomial);
+    const double factor = used.size() == nodes.size() ? std::exp(std::max(0.0, log_ratio)) : 1.0;
+    const double missed_m = (found.position_eci - omitted.state.position_eci).norm();
+    const double missed_mps = (found.velocity_eci - omitted.state.velocity_eci).norm();
+    if (!(factor * missed_m <= bound.position_m)) bound.position_m = factor * missed_m;
+    if (!(factor * missed_mps <= bound.velocity_mps)) bound.velocity_mps = factor * missed_mps;
+  }
+  return bound;
+}
+
+/// Quarter of the period of a circular orbit at the lower one of two states.
+double quarter_revolution_s(const TimedState& before, const TimedState& behind) {
+  const double radius_m = std::min(before.state.position_eci.norm(), behind.state.position_eci.norm());
+  return 0.5 * std::numbers::pi * std::sqrt(radius_m * radius_m * radius_m / fsw::orbit::kMu);
+}
+
+}  // namespace
+
+std::string name_of(const InterpolationRule& rule) {
+  return fmt::format("{} polynomial of degree {}", rule.polynomial == Polynomial::kHermite ? "Hermite" : "Lagrange",
+                     rule.degree);
+}
+
+FramedState interpolated(const Track& track, fsw::GpsTime time, const std::string& file) {
+  const auto refuse = [&](const std::string& reason) {
+    throw std::out_of_range(
+        fmt::format("{}: no state of {} at {}: {}", file, track.object, truth::format_utc(time, 3), reason));
+  };
+  const States all(track.states);
+  const std::size_t place = place_of(all, time);
+  const bool is_exact = all[place - 1].time == time;
+  if (is_exact && track.has_velocities) return {track.frame, all[place - 1].state, std::nullopt};
+  if (all.size() < 2) refuse("its file has one position and no velocity");
+  const std::size_t step = is_exact && place > 1 ? place - 2 : place - 1;  // that holds the time
+  const double width_s = step_s(all, step);
+  if (is_gap(track, step) && !is_exact)
+    refuse(fmt::format("its states have a gap from {} to {}", truth::format_utc(all[step].time, 3),
+                       truth::format_utc(all[step + 1].time, 3)));
+  const InterpolationRule rule = track.published_rule.value_or(track.has_velocities ? kOfStates : kOfPositions);
+  const States states = without_gap(track, place);
+  const States nodes = states_about(states, time, node_count(rule));
+  const std::size_t min_count = track.has_velocities ? 3 : kMinPositions;
+  if (states.size() < min_count)
+    refuse(fmt::format("{} states without a gap are too few to interpolate and to check it, accepted: {} or more",
+                       states.size(), min_count));
+  if (width_s > quarter_revolution_s(all[step], all[step + 1]))
+    refuse(
+        fmt::format("its states are {:.0f} s apart, accepted: up to a quarter of a revolution, {:.0f} s, or a time "
+                    "at one of its states",
+                    width_s, quarter_revolution_s(all[step], all[step + 1])));
+  const Bound bound = leave_one_out(states, nodes, time, rule, track.has_velocities);
+  if (!(bound.position_m <= kMaxInterpolationErrorM))
+    refuse(
+        fmt::format("states about it that are left out are found again from their neighbours, {:.6g} s apart, by "
+                    "the {}{} with an error of {:.3g} m, accepted: up to {} m, or a time at one of its states",
+                    width_s, name_of(rule), rule.is_published ? " that the file states" : "", bound.position_m,
+                    kMaxInterpolationErrorM));
+  InterpolationCheck check{rule, width_s, bound.position_m, std::nullopt};
+  if (track.has_velocities) check.bound_mps = std::max(bound.velocity_mps, bound.position_m / width_s);
+  return {track.frame, by_polynomial(nodes, time, rule.polynomial, track.has_velocities), check};
 }
 
 }  // namespace vbar::orbit_files

@@ -10,7 +10,6 @@
 
 #include "host_sim/files/text_lines.h"
 #include "host_sim/truth/earth/time_scales.h"
-#include "host_sim/truth/earth/utc_day.h"
 
 namespace vbar::orbit_files {
 namespace {

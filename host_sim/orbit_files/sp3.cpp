@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "host_sim/orbit_files/kvn.h"
+#include "host_sim/orbit_files/ccsds_messages.h"
 
 namespace vbar::orbit_files {
 namespace {

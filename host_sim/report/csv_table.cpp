@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "host_sim/report/text_file.h"
+#include "host_sim/files/output_file.h"
 
 namespace vbar::report {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "host_sim/report/html_page.h"
-#include "host_sim/report/paper_column.h"
+#include "host_sim/report/plots/html_page.h"
+#include "host_sim/report/published_figures.h"
 #include "host_sim/report/table_kind.h"
 
 namespace vbar::report {

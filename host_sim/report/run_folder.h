@@ -1,18 +1,42 @@
 #pragma once
-// The folder that a run leaves, and reading it back. A folder says that its run is incomplete from the moment it exists
-// until the run is known to be whole, so that a killed run can never be taken for a finished one.
+// One writer at a time in a run folder.
 
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "host_sim/report/run_lock.h"
 #include "host_sim/report/run_record.h"
 #include "host_sim/report/run_tables.h"
 
 namespace vbar::report {
+
+/// The folder is in use, or holds something that may not be replaced.
+class FolderRefused : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Holds `run.lock` in a folder; the file disappears with this object, or stays unlocked if the process is killed.
+class RunLock {
+ public:
+  static constexpr const char* kFile = "run.lock";
+
+  /// Throws FolderRefused that names the process that holds the lock, std::runtime_error if there can be no lock.
+  explicit RunLock(const std::filesystem::path& folder);
+  ~RunLock();
+  RunLock(const RunLock&) = delete;
+  RunLock& operator=(const RunLock&) = delete;
+
+ private:
+  std::filesystem::path file_;
+  int descriptor_ = -1;
+};
+
+// The folder that a run leaves, and reading it back. A folder says that its run is incomplete from the moment it exists
+// until the run is known to be whole, so that a killed run can never be taken for a finished one.
 
 /// Returns the default folder of a run: runs/<mission>-<seed>, and from the second run on runs/<mission>-<seed>.2, .3,
 /// ...: the first that does not exist.

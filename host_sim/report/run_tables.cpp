@@ -7,10 +7,10 @@
 #include <tuple>
 #include <utility>
 
+#include "host_sim/files/output_file.h"
 #include "host_sim/report/csv_table.h"
 #include "host_sim/report/extension.h"
 #include "host_sim/report/run_columns.h"
-#include "host_sim/report/text_file.h"
 
 namespace vbar::report {
 namespace {

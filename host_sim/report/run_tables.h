@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "host_sim/report/partial_file.h"
+#include "host_sim/files/output_file.h"
 #include "host_sim/report/run_record.h"
 
 namespace vbar::report {

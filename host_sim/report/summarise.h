@@ -1,5 +1,5 @@
 #pragma once
-// The figures of a run, computed from its tables.
+// Consistency of navigation over a run and at selected times, for campaigns.
 
 #include <string>
 #include <vector>
@@ -7,6 +7,13 @@
 #include "host_sim/report/run_record.h"
 
 namespace vbar::report {
+
+/// Dimension of the NEES, mean NIS and its dimension, and the samples at the times that `summary.samples` names: of the
+/// estimates and of the figures that the extensions give. A sample without an estimate at its time has no errors; the
+/// consistency figures of a sample are the last ones after the previous sample, so that no figure serves two samples.
+void summarise_consistency(const RunRecord& record, Summary& summary);
+
+// The figures of a run, computed from its tables.
 
 /// The facts of record.summary, and every figure that the tables give. Figures that need a fact which an older version
 /// did not write (the target's name) stay as they were.

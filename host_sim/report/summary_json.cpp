@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "host_sim/report/text_file.h"
+#include "host_sim/files/output_file.h"
 
 namespace vbar::report {
 namespace {

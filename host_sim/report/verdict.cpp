@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "host_sim/report/csv_table.h"
-#include "host_sim/report/mission_views.h"
-#include "host_sim/report/true_distance.h"
+#include "host_sim/report/run_series.h"
+#include "host_sim/report/statistics.h"
 
 namespace vbar::report {
 namespace {

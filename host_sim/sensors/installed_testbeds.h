@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "hil_drivers/testbed.h"
-#include "host_sim/engine/wall_clock.h"
+#include "host_sim/engine/clock.h"
+#include "host_sim/sensors/testbed.h"
 
 namespace vbar::testbeds {
 

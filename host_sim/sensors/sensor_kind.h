@@ -1,28 +1,65 @@
 #pragma once
-// A kind of sensor: all properties by which the program handles it, registered in sensor_kinds.cpp.
+// The measurements of a sensor beside the truth: rows of the record, made while the mission flies.
 
 #include <any>
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "fsw/core/gps_time.h"
 #include "fsw/orbit/elements.h"
 #include "fsw/packets/messages.h"
+#include "fsw/packets/packet.h"
+#include "host_sim/mission/mission.h"
 #include "host_sim/mission/sensor_reader.h"
 #include "host_sim/report/extension.h"
-#include "host_sim/sensors/evaluation.h"
+#include "host_sim/report/run_record.h"
 #include "host_sim/sensors/installed_testbeds.h"
 #include "host_sim/truth/earth/earth_orientation.h"
+#include "host_sim/twins/packet_log.h"
 #include "host_sim/twins/packet_source.h"
-#include "host_sim/twins/tile_source.h"
 
 namespace vbar::sensors {
+
+/// Evaluates a sensor: called on events in their order; a class overrides the calls that it needs.
+class Evaluation {
+ public:
+  Evaluation() = default;
+  Evaluation(const Evaluation&) = delete;
+  Evaluation& operator=(const Evaluation&) = delete;
+  virtual ~Evaluation() = default;
+
+  /// Receives the truth of a measurement of this sensor, if its source is one whose truth is compared.
+  virtual void on_measured(const twins::TruthSnapshot& /*truth*/) {}
+  /// Receives the bytes that the flight software received, from all sensors, with the step at `time`.
+  virtual void on_inputs(fsw::GpsTime /*time*/, std::span<const twins::Packet> /*inputs*/) {}
+  /// Receives the answer of the flight software: telemetry and commands.
+  virtual void on_answer(fsw::GpsTime /*time*/, std::span<const fsw::packets::PacketView> /*answer*/) {}
+  /// Ends the evaluation when the run is over, however it ended.
+  virtual void finish() {}
+};
+
+struct EvaluationContext {
+  const mission::Mission& mission;
+  const mission::Spacecraft& servicer;  ///< carries the sensor and the flight software
+  report::RunRecord& record;            ///< outlives the evaluation
+};
+
+/// Pairs an evaluation with the source whose truth it receives.
+struct NamedEvaluation {
+  std::string source;  ///< "servicer/lidar"
+  std::unique_ptr<Evaluation> evaluation;
+};
+
+// A kind of sensor: all properties by which the program handles it, registered in sensor_kinds.cpp.
 
 /// Telecommands to one spacecraft in the order in which they are sent.
 class Telecommands {
@@ -145,5 +182,34 @@ template <class Settings>
 const Settings& settings_of(const mission::Sensor& sensor) {
   return dynamic_cast<const Settings&>(*sensor.settings);
 }
+
+// Packets of a sensor that a testbed provides whole.
+
+/// Returns why a packet of an allowed message cannot be a measurement of the sensor; empty if it can.
+using FaultOfValue = std::function<std::string(const fsw::packets::PacketView&)>;
+
+/// Limits of one epoch: packets beyond are rejected.
+struct PacketLimits {
+  std::size_t packets_max = 65535;
+  FaultOfValue fault_of_value = {};
+};
+
+/// Makes the source of a sensor's packets about `carrier`, if a testbed provides whole packets: a sensor in another
+/// process. Null for any other source. `kind`: that of the sensor. Throws std::runtime_error if the testbed cannot, and
+/// without a run.
+[[nodiscard]] std::unique_ptr<twins::PacketSource> packets_of_testbed(const mission::Sensor& sensor,
+                                                                      const SensorKind& kind,
+                                                                      const MakeContext& context,
+                                                                      const mission::Spacecraft& carrier,
+                                                                      std::vector<fsw::packets::Apid> allowed,
+                                                                      std::uint8_t unit, PacketLimits limits = {});
+
+/// Returns such a source for a kind of sensor that testbeds provide in no other form: throws std::runtime_error for
+/// another source of a testbed.
+[[nodiscard]] std::unique_ptr<twins::PacketSource> only_packets_of_testbed(const mission::Sensor& sensor,
+                                                                           const SensorKind& kind,
+                                                                           const MakeContext& context,
+                                                                           fsw::packets::Apid allowed,
+                                                                           FaultOfValue fault_of_value = {});
 
 }  // namespace vbar::sensors

@@ -8,7 +8,7 @@ from torch.nn import functional
 import crops
 
 BYTES_A_SAMPLE = 4.0
-LEAST_DEVIATION = 0.5  # as in fsw/pose/crop.cpp
+LEAST_DEVIATION = 0.5  # as in fsw/vision/pose/crop.cpp
 
 
 def standardised(samples):

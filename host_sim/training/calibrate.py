@@ -20,7 +20,7 @@ GROSS_CELLS = 3.0  # farther off than this a keypoint is wrong, not inexact
 MOST_GROSS = 0.01  # of the keypoints that are accepted
 CHI_SQUARE_MEDIAN = 1.3863  # of two degrees of freedom; their mean is 2
 CLASSES = 6  # of sharpness, all to have the right median
-CROP_RADII = 2.3  # what a crop's side spans at the target in flight (fsw/pose/region.h)
+CROP_RADII = 2.3  # what a crop's side spans at the target in flight (fsw/vision/pose/crop.h)
 
 
 def peaks_of(layers, table):

@@ -3,12 +3,90 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
-#include "host_sim/sensors/camera/camera_file.h"
-#include "host_sim/training/draws.h"
+#include "host_sim/mission/body_file.h"
+#include "host_sim/sensors/settings/camera_file.h"
 #include "host_sim/twins/camera/optics.h"
 
 namespace vbar::training {
+
+TargetShape TargetShape::load(const std::filesystem::path& data_directory, const std::string& target) {
+  const std::filesystem::path file = mission::body_file_of(data_directory, target);
+  const fsw::Vector3 centre_of_mass = mission::load_body(file).centre_of_mass_m;
+  const std::vector<fsw::Vector3> from_origin = mission::load_keypoints(file, fsw::pose::kKeypoints);
+  TargetShape shape;
+  std::copy(from_origin.begin(), from_origin.end(), shape.keypoints.begin());
+  shape.model_origin = -centre_of_mass;
+  for (fsw::Vector3& keypoint : shape.keypoints) {
+    keypoint -= centre_of_mass;
+    shape.radius_m = std::max(shape.radius_m, keypoint.norm());
+  }
+  return shape;
+}
+
+namespace {
+
+using twins::camera::Material;
+
+constexpr double kMaxReflected = 0.95;
+constexpr double kMaxExponent = 3000.0;
+
+Material grey(const Material& like, double diffuse, double specular, double exponent) {
+  const double sum = diffuse + specular;
+  const double by = sum > kMaxReflected ? kMaxReflected / sum : 1.0;
+  Material material = like;
+  material.diffuse.fill(by * diffuse);
+  material.specular.fill(by * specular);
+  material.exponent = std::min(exponent, kMaxExponent);
+  return material;
+}
+
+Material near(const Material& own, engine::RandomStream& stream) {
+  // Inside the range that training excludes, also after rounding.
+  constexpr double kNear = 0.999 * kOwnFamily;
+  double diffuse = stream.uniform(-kNear, kNear) * own.grey_diffuse();
+  double specular = stream.uniform(-kNear, kNear) * own.grey_specular();
+  const double exponent = own.exponent * stream.uniform(1.0 - kNear, 1.0 + kNear);
+  // Limited to physical reflectivities: then part of the way.
+  const double own_sum = own.grey_diffuse() + own.grey_specular();
+  const double part = std::min(1.0, (kMaxReflected - own_sum) / std::max(diffuse + specular, 1e-9));
+  diffuse = own.grey_diffuse() + part * diffuse;
+  specular = own.grey_specular() + part * specular;
+  return grey(own, diffuse, specular, exponent);
+}
+
+Material far(std::span<const Material> file, std::size_t which, engine::RandomStream& stream) {
+  constexpr double kSwapped = 0.3;
+  constexpr int kTries = 100;  // one in ten is too close
+  const Material& own = file[which];
+  Material drawn;
+  for (int i = 0; i < kTries; ++i) {
+    const Material& like = stream.uniform() < kSwapped ? file[index_below(file.size(), stream)] : own;
+    const double diffuse = like.grey_diffuse() * log_uniform(0.3, 3.0, stream);
+    const double specular = like.grey_specular() * log_uniform(0.3, 3.0, stream);
+    drawn = grey(own, diffuse, specular, like.exponent * log_uniform(0.2, 5.0, stream));
+    if (!is_of_own_family(drawn, own)) return drawn;
+  }
+  return grey(own, 0.5 * own.grey_diffuse(), 0.5 * own.grey_specular(), own.exponent);
+}
+
+}  // namespace
+
+bool is_of_own_family(const Material& drawn, const Material& own) {
+  const auto is_near = [](double value, double reference) {
+    return std::abs(value - reference) <= kOwnFamily * reference;
+  };
+  return is_near(drawn.grey_diffuse(), own.grey_diffuse()) && is_near(drawn.grey_specular(), own.grey_specular());
+}
+
+std::vector<Material> draw_materials(CropKind kind, std::span<const Material> file, engine::RandomStream& stream) {
+  std::vector<Material> materials;
+  for (std::size_t i = 0; i < file.size(); ++i)
+    materials.push_back(kind == CropKind::kHeldOut ? near(file[i], stream) : far(file, i, stream));
+  return materials;
+}
+
 namespace {
 
 using fsw::Matrix3;
@@ -77,7 +155,7 @@ Circumstances draw_circumstances(const twins::camera::CameraSettings& camera, co
                                  engine::RandomStream& stream) {
   const twins::camera::Optics optics(camera);
   Circumstances drawn;
-  const double range = stream.uniform(kLeastRangeM, kMostRangeM);
+  const double range = stream.uniform(kMinRangeM, kMaxRangeM);
   const double radius_px = shape.radius_m * optics.focal_length_px() / range;
   const Vector2 centre_px = draw_centre(camera.region, radius_px, stream);
   drawn.centre_of_mass_camera = range * optics.direction_of(centre_px);

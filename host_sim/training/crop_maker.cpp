@@ -3,18 +3,61 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "host_sim/mission/body_file.h"
-#include "host_sim/training/materials.h"
-#include "host_sim/training/soft_picture.h"
+#include "host_sim/training/circumstances.h"
 #include "host_sim/twins/camera/earth_disc.h"
 #include "host_sim/twins/camera/photometry.h"
 #include "host_sim/twins/camera/point_spread.h"
 
 namespace vbar::training {
+
+namespace {
+
+std::vector<float> kernel_of(double sigma_px) {
+  const int reach = static_cast<int>(std::ceil(3.5 * sigma_px));
+  std::vector<double> weights;
+  double sum = 0.0;
+  for (int k = -reach; k <= reach; ++k) {
+    weights.push_back(std::exp(-0.5 * k * k / (sigma_px * sigma_px)));
+    sum += weights.back();
+  }
+  std::vector<float> kernel;
+  for (const double weight : weights) kernel.push_back(static_cast<float>(weight / sum));
+  return kernel;
+}
+
+}  // namespace
+
+void soften(double sigma_px, int width, int height, std::vector<float>& picture) {
+  if (!(sigma_px >= 0.05)) return;
+  const std::vector<float> kernel = kernel_of(sigma_px);
+  const int reach = static_cast<int>(kernel.size() / 2);
+  std::vector<float> across(picture.size(), 0.0F);
+  for (int y = 0; y < height; ++y) {
+    const float* const from = picture.data() + static_cast<std::ptrdiff_t>(y) * width;
+    float* const to = across.data() + static_cast<std::ptrdiff_t>(y) * width;
+    for (int k = -reach; k <= reach; ++k) {
+      const float weight = kernel[static_cast<std::size_t>(k + reach)];
+      const int first = std::max(0, k), last = std::min(width, width + k);
+      for (int x = first; x < last; ++x) to[x] += weight * from[x - k];
+    }
+  }
+  std::fill(picture.begin(), picture.end(), 0.0F);
+  for (int y = 0; y < height; ++y) {
+    float* const to = picture.data() + static_cast<std::ptrdiff_t>(y) * width;
+    for (int k = std::max(-reach, y - height + 1); k <= std::min(reach, y); ++k) {
+      const float weight = kernel[static_cast<std::size_t>(k + reach)];
+      const float* const from = across.data() + static_cast<std::ptrdiff_t>(y - k) * width;
+      for (int x = 0; x < width; ++x) to[x] += weight * from[x];
+    }
+  }
+}
+
 namespace {
 
 using fsw::Vector2;
@@ -95,9 +138,9 @@ void CropMaker::label(LabelledCrop& crop) const {
     const auto pixel = optics_.project(c.centre_of_mass_camera + c.R_camera_body * shape_.keypoints[k]);
     crop.counts[k] = pixel.has_value();
     crop.pixels[k] = pixel.value_or(Vector2::Zero());
-    crop.cells[k] = c.region.place_of(crop.pixels[k], fsw::network::kMapSide);
+    crop.cells[k] = c.region.place_of(crop.pixels[k], fsw::pose::kMapSide);
     for (const double cell : crop.cells[k])
-      if (!(cell >= -1.0 && cell <= fsw::network::kMapSide)) crop.counts[k] = false;
+      if (!(cell >= -1.0 && cell <= fsw::pose::kMapSide)) crop.counts[k] = false;
   }
 }
 

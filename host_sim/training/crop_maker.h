@@ -1,8 +1,5 @@
 #pragma once
-// Crops for training: rendered, illuminated, exposed and read as by the camera twin, cut by the flight software.
-//
-// The light of the target, the sky, the Earth and the detector are the twin's. Only the lens differs, for speed: light
-// is gathered on whole pixels and softened there, the target on one and a half to three texels a sample of the crop.
+// Blur of an image by a lens: two passes of a sampled Gaussian.
 
 #include <cstdint>
 #include <filesystem>
@@ -11,23 +8,31 @@
 #include <vector>
 
 #include "host_sim/training/circumstances.h"
-#include "host_sim/training/crop_kind.h"
 #include "host_sim/twins/camera/detector.h"
-#include "host_sim/twins/camera/model/silhouette.h"
+#include "host_sim/twins/camera/model/cad_objects.h"
 #include "host_sim/twins/camera/model/target_renderer.h"
 #include "host_sim/twins/camera/optics.h"
 #include "host_sim/twins/camera/star_sky.h"
 
 namespace vbar::training {
 
+/// Blurs `picture` (rows of `width`) in place by a Gaussian with this standard deviation in pixels; light beyond the
+/// edge is lost. A deviation below 0.05 px changes nothing.
+void soften(double sigma_px, int width, int height, std::vector<float>& picture);
+
+// Crops for training: rendered, illuminated, exposed and read as by the camera twin, cut by the flight software.
+//
+// The light of the target, the sky, the Earth and the detector are the twin's. Only the lens differs, for speed: light
+// is gathered on whole pixels and softened there, the target on one and a half to three texels a sample of the crop.
+
 /// A crop and its labels.
 struct LabelledCrop {
   fsw::pose::CropSamples samples;  ///< not standardised
   Circumstances circumstances;
   std::vector<twins::camera::Material> materials;
-  std::array<fsw::Vector2, fsw::network::kKeypoints> pixels;  ///< places of the keypoints on the detector
-  std::array<fsw::Vector2, fsw::network::kKeypoints> cells;   ///< the same in cells of a map
-  std::array<bool, fsw::network::kKeypoints> counts;          ///< no more than half a cell outside the map
+  std::array<fsw::Vector2, fsw::pose::kKeypoints> pixels;  ///< places of the keypoints on the detector
+  std::array<fsw::Vector2, fsw::pose::kKeypoints> cells;   ///< the same in cells of a map
+  std::array<bool, fsw::pose::kKeypoints> counts;          ///< no more than half a cell outside the map
 };
 
 class CropMaker {

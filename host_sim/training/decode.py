@@ -1,4 +1,4 @@
-"""Keypoints from heatmaps, as in the flight software (fsw/pose/heatmap.cpp): mean and second moments in a window about
+"""Keypoints from heatmaps, as in the flight software (fsw/vision/pose/heatmap.cpp): mean and second moments in a window about
 the highest cell, less what the Gaussian that training asked for has of them itself."""
 
 import dataclasses

@@ -11,7 +11,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "fsw/network/sizes.h"
+#include "fsw/vision/pose/sizes.h"
 #include "host_sim/mission/body_file.h"
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/training/keypoint_choice.h"
@@ -47,10 +47,10 @@ void answer(const Order& order) {
   const auto model = vbar::twins::camera::load_cad_model(vbar::mission::cad_source_of(data, order.target));
   std::vector<Vector3> keypoints;
   if (order.shows_own) {
-    keypoints = vbar::mission::load_keypoints(body, vbar::fsw::network::kKeypoints);
+    keypoints = vbar::mission::load_keypoints(body, vbar::fsw::pose::kKeypoints);
   } else {
     const auto chosen = vbar::training::choose_keypoints(model, vbar::mission::load_body(body).centre_of_mass_m,
-                                                         vbar::fsw::network::kKeypoints);
+                                                         vbar::fsw::pose::kKeypoints);
     print(chosen);
     for (const auto& keypoint : chosen) keypoints.push_back(keypoint.at_body);
   }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "host_sim/report/partial_file.h"
+#include "host_sim/files/output_file.h"
 
 namespace vbar::training {
 namespace {
@@ -51,7 +51,7 @@ void write_shard(const std::filesystem::path& file, std::uint64_t seed, std::int
   header.resize(16, '\0');
   append_integer(count, 4, header);
   append_integer(fsw::pose::kCropSide, 4, header);
-  append_integer(fsw::network::kKeypoints, 4, header);
+  append_integer(fsw::pose::kKeypoints, 4, header);
   append_integer(kNumbers, 4, header);
   append_integer(seed, 8, header);
   append_integer(static_cast<std::uint64_t>(first), 8, header);

@@ -10,7 +10,7 @@
 #include "host_sim/truth/earth/earth_orientation.h"
 #include "host_sim/truth/earth/space_weather.h"
 #include "host_sim/truth/forces/force.h"
-#include "host_sim/truth/forces/gravity_field.h"
+#include "host_sim/truth/forces/gravitation.h"
 #include "host_sim/truth/forces/solid_tides.h"
 #include "host_sim/truth/truth_settings.h"
 
@@ -39,5 +39,14 @@ void load_atmosphere(const TruthSettings& settings, ForceData& data);
 /// property, if a force needs a mass, an area or a coefficient that the spacecraft does not have.
 std::vector<std::unique_ptr<Force>> make_forces(const TruthSettings& settings, const ForceData& data,
                                                 const SpacecraftSettings& spacecraft);
+
+// Earth orientation and space weather of a run: from the file that is named, from the data folder, or assumed. What is
+// assumed or predicted is noted with the size of the error.
+
+/// Load data of the Earth. Both throw std::runtime_error for a missing or damaged file or, where settings do not accept
+/// predictions, a predicted value, and std::out_of_range if a file that is named does not reach from the epoch to the
+/// end.
+void load_earth_orientation(const TruthSettings& settings, ForceData& data);
+void load_space_weather(const TruthSettings& settings, ForceData& data);
 
 }  // namespace vbar::truth

@@ -8,8 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "host_sim/truth/gve.h"
-#include "host_sim/truth/orbit_geometry.h"
+#include "host_sim/truth/orbital_motion.h"
 
 namespace vbar::truth {
 namespace {

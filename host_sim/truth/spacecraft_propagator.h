@@ -14,7 +14,7 @@
 #include "fsw/orbit/elements.h"
 #include "host_sim/truth/attitude/attitude_motion.h"
 #include "host_sim/truth/attitude/pointing_profile.h"
-#include "host_sim/truth/dopri5.h"
+#include "host_sim/truth/integration/dopri5.h"
 #include "host_sim/truth/spacecraft_dynamics.h"
 
 namespace vbar::truth {

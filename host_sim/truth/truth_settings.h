@@ -7,7 +7,6 @@
 #include "fsw/core/gps_time.h"
 #include "fsw/orbit/elements.h"
 #include "host_sim/truth/forces/force_model.h"
-#include "host_sim/truth/forces/surface_properties.h"
 
 namespace vbar::truth {
 

@@ -2,16 +2,62 @@
 
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include <vbar_host/packet_record.hpp>
 #include <vbar_host/tile_run.hpp>
 
 #include "fsw/packets/big_endian.h"
 #include "fsw/packets/message_traits.h"
-#include "host_sim/twins/lcm_log_reader.h"
-#include "host_sim/twins/lcm_log_writer.h"
+#include "fsw/packets/messages.h"
+#include "host_sim/twins/lcm_log.h"
 
 namespace vbar::twins {
+
+namespace {
+
+constexpr std::uint64_t kFnvOffset = 0xcbf29ce484222325U;
+constexpr std::uint64_t kFnvPrime = 0x00000100000001b3U;
+
+/// Adds a packet by its CRC, in which the packet ends.
+std::uint64_t add_to_checksum(std::uint64_t checksum, const Packet& packet) {
+  for (const std::uint8_t byte : std::span(packet).last(fsw::packets::kPacketCrcBytes))
+    checksum = (checksum ^ byte) * kFnvPrime;
+  return checksum;
+}
+
+}  // namespace
+
+std::optional<TileRun> tile_run_of(const Packet& packet) {
+  const auto view = fsw::packets::parse_packet(packet);
+  if (!view.ok() || view.value().header.apid != fsw::packets::Apid::kImageTile) return std::nullopt;
+  const auto tile = fsw::packets::decode<image_tile>(view.value());
+  if (!tile.ok()) return std::nullopt;
+  TileRun run;
+  run.spacecraft = view.value().header.spacecraft;
+  run.unit = view.value().header.unit;
+  run.image = tile.value().image;
+  run.first_tile = tile.value().tile;
+  run.tiles = 1;
+  run.checksum = add_to_checksum(kFnvOffset, packet);
+  return run;
+}
+
+bool extend(TileRun& run, const TileRun& next, const Packet& packet) {
+  const bool follows = next.spacecraft == run.spacecraft && next.unit == run.unit && next.image == run.image &&
+                       next.first_tile == run.first_tile + run.tiles;
+  if (!follows) return false;
+  run.tiles = static_cast<std::int16_t>(run.tiles + 1);
+  run.checksum = add_to_checksum(run.checksum, packet);
+  return true;
+}
+
+std::uint64_t checksum_of(std::span<const Packet> packets) {
+  std::uint64_t checksum = kFnvOffset;
+  for (const Packet& packet : packets) checksum = add_to_checksum(checksum, packet);
+  return checksum;
+}
+
 namespace {
 
 // LCM counts microseconds since 1970; GPS time counts from 1980-01-06. Leap seconds are left out: it is a label, not a
@@ -199,6 +245,43 @@ PacketLog read_packet_log(const std::filesystem::path& file) {
   log.bytes = reader.size();
   log.cut_short = reader.cut_short();
   return log;
+}
+
+void ImageLogWriter::write_recipe(fsw::GpsTime time, const LoggedImage& recipe) {
+  if (tiles_ == Tiles::kWhole) return;
+  known_.insert(recipe.key);
+  writer_.write_recipe(time, recipe.bytes);
+}
+
+void ImageLogWriter::write_recording(fsw::GpsTime time, const LoggedImage& recording) {
+  if (tiles_ == Tiles::kAsRuns) known_.insert(recording.key);
+  writer_.write_recording(time, recording.bytes);
+}
+
+void ImageLogWriter::write(const PacketRecord& record) {
+  if (joins_run(record)) return;
+  end_run();
+  const auto tile = record.to_flight ? tile_run_of(record.packet) : std::nullopt;
+  if (tile && known_.contains(tile->key())) {
+    run_ = PacketRecord{record.step, record.time, true, {}, tile};
+  } else {
+    writer_.write(record);
+  }
+}
+
+bool ImageLogWriter::joins_run(const PacketRecord& record) {
+  if (!run_ || !record.to_flight) return false;
+  const auto tile = tile_run_of(record.packet);
+  return tile && extend(*run_->tiles, *tile, record.packet);
+}
+
+void ImageLogWriter::end_step() {
+  end_run();
+  writer_.flush();
+}
+
+void ImageLogWriter::end_run() {
+  if (run_) writer_.write(*std::exchange(run_, std::nullopt));
 }
 
 }  // namespace vbar::twins

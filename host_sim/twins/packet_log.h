@@ -1,4 +1,43 @@
 #pragma once
+// Image tiles that a log holds without their pixels.
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fsw/core/gps_time.h"
+#include "host_sim/twins/packet_source.h"
+
+namespace vbar::twins {
+
+/// Consecutive tiles of one image, in order.
+struct TileRun {
+  std::uint8_t spacecraft = 0;  ///< as in the packets' headers
+  std::uint8_t unit = 0;
+  std::int32_t image = 0;
+  std::int16_t first_tile = 0;
+  std::int16_t tiles = 0;
+  std::uint64_t checksum = 0;  ///< FNV-1a, 64 bits, of the packets' own CRCs, one after another
+  [[nodiscard]] ImageKey key() const { return {spacecraft, unit, image}; }
+  friend bool operator==(const TileRun&, const TileRun&) = default;
+};
+
+/// Returns the run of this packet alone; empty if it is not an image tile.
+[[nodiscard]] std::optional<TileRun> tile_run_of(const Packet& packet);
+
+/// Appends the run of the next tile; false, without a change, if it is not the next one. `packet` is the tile.
+bool extend(TileRun& run, const TileRun& next, const Packet& packet);
+
+/// Returns the checksum of a run of these packets, each a whole space packet.
+[[nodiscard]] std::uint64_t checksum_of(std::span<const Packet> packets);
+
 // Logs of packets in LCM's log format: the log of a run (packets.lcmlog), and the log that lcm-logger writes when it
 // listens to a live run. A packet is two events:
 //   VBAR_PACKET                               a vbar_host.packet_record: the whole space packet, its step and direction
@@ -12,21 +51,6 @@
 //   VBAR_END                                  the number of events before it, 8 bytes big-endian
 // Only the channels in capitals are read back. Event times are the simulated GPS time, so that the same run writes the
 // same log.
-
-#include <cstdint>
-#include <filesystem>
-#include <functional>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <vector>
-
-#include "fsw/core/gps_time.h"
-#include "host_sim/twins/packet_source.h"
-#include "host_sim/twins/tile_run.h"
-
-namespace vbar::twins {
 
 inline constexpr const char* kPacketChannel = "VBAR_PACKET";
 inline constexpr const char* kRecipeChannel = "VBAR_IMAGE_RECIPE";
@@ -128,5 +152,71 @@ struct PacketLog : ImagesOfLog {
 /// Reads all packets of a log; events of other channels are ignored. Throws std::runtime_error that names a file
 /// that cannot be read, and DamagedLog (lcm_log.h) for one that is not an LCM log or holds a damaged record.
 [[nodiscard]] PacketLog read_packet_log(const std::filesystem::path& file);
+
+// The log of a run without the tiles of its images: it holds what they can be made from, and runs of tiles in place of
+// the tiles that went to the flight software. The tiles of an image are 600 kB, its recipe and its runs 2 kB, its
+// recording some 120 kB.
+
+/// Writes such a log. Tiles of images of which it was given neither recipe nor recording stay whole.
+class ImageLogWriter {
+ public:
+  /// Form of a tile in the log.
+  enum class Tiles {
+    kAsRuns,
+    kWhole,  ///< nothing: recipes are not kept; recordings are, so that an image is in the log before it is used
+  };
+
+  /// Creates the log as PacketLogWriter does.
+  ImageLogWriter(const std::filesystem::path& file, Tiles tiles, EventCheck check = {})
+      : writer_(file, std::move(check)), tiles_(tiles) {}
+
+  /// Writes a recipe, before the tiles of its image.
+  void write_recipe(fsw::GpsTime time, const LoggedImage& recipe);
+  /// Writes a recording, before the tiles of its image. It is in the file when the function returns.
+  void write_recording(fsw::GpsTime time, const LoggedImage& recording);
+
+  /// Writes a packet; packets come in order. A tile may be held back until it is known how far its run goes.
+  void write(const PacketRecord& record);
+
+  /// Ends a step; called at the end of every step, because a run of tiles does not reach beyond one. It writes what was
+  /// held back. All that was written outlives the program then. Throws as PacketLogWriter.
+  void end_step();
+
+  /// Ends the log as PacketLogWriter does.
+  void finish() { writer_.finish(); }
+
+ private:
+  bool joins_run(const PacketRecord& record);
+  void end_run();
+
+  PacketLogWriter writer_;
+  Tiles tiles_;
+  std::set<ImageKey> known_;
+  std::optional<PacketRecord> run_;
+};
+
+// Image tiles that a log holds in another form.
+
+/// Restores the tiles. A camera provides it (camera/logged_image.h).
+class TileSource {
+ public:
+  TileSource() = default;
+  TileSource(const TileSource&) = delete;
+  TileSource& operator=(const TileSource&) = delete;
+  virtual ~TileSource() = default;
+
+  /// Returns the packets of a run. Throws DamagedLog for a damaged recording and std::runtime_error for a run that
+  /// cannot be restored; the message names file and image.
+  virtual std::vector<Packet> packets_of(const TileRun& run) = 0;
+
+  /// Returns the times of all exposures of which the log holds recipe or recording.
+  [[nodiscard]] virtual std::vector<fsw::GpsTime> exposures() const = 0;
+  /// Return what the log holds of the exposure.
+  [[nodiscard]] virtual std::optional<LoggedImage> recipe_at(fsw::GpsTime exposure) const = 0;
+  [[nodiscard]] virtual std::optional<LoggedImage> recording_at(fsw::GpsTime exposure) const = 0;
+};
+
+/// Makes a TileSource from the images of a log. Throws DamagedLog.
+using MakeTileSource = std::function<std::unique_ptr<TileSource>(ImagesOfLog&&)>;
 
 }  // namespace vbar::twins

@@ -12,10 +12,11 @@
 #include <vector>
 
 #include "fsw/core/gps_time.h"
+#include "fsw/core/types.h"
 #include "fsw/orbit/elements.h"
 #include "fsw/packets/packet.h"
-#include "host_sim/io/wired_receiver.h"
-#include "host_sim/truth/attitude/attitude_state.h"
+#include "host_sim/io/serial_line.h"
+#include "host_sim/truth/attitude/attitude_motion.h"
 
 namespace vbar::twins {
 
@@ -205,5 +206,35 @@ struct NamedSource {
   const std::int64_t periods = ((from - start).ns + period.ns - 1) / period.ns;
   return start + fsw::Duration{periods * period.ns};
 }
+
+// The name under which sources note packets that were not accepted.
+
+/// Name of a note of a measurement, and of a figure of a source's statistics: number of its packets that were not
+/// accepted.
+inline constexpr std::string_view kPacketsRejected = "packets_rejected";
+
+// The true world as a run moves it: time goes on, one spacecraft flies.
+
+class TrueWorld {
+ public:
+  TrueWorld() = default;
+  TrueWorld(const TrueWorld&) = delete;
+  TrueWorld& operator=(const TrueWorld&) = delete;
+  virtual ~TrueWorld() = default;
+
+  /// Advances the world, not back in time.
+  virtual void advance_to(fsw::GpsTime time) = 0;
+  /// Returns the truth at the current time.
+  [[nodiscard]] virtual TruthSnapshot snapshot(TruthDetail detail) = 0;
+
+  // The spacecraft that flies.
+  /// Adds a velocity, m/s in its own RTN, at the current time.
+  virtual void apply_impulse_rtn(const fsw::Vector3& dv_rtn) = 0;
+  /// Points it to a direction in its own RTN, a unit vector and its rate (1/s) at `time`, if its attitude is commanded.
+  virtual void point(fsw::GpsTime time, const fsw::Vector3& boresight_rtn, const fsw::Vector3& boresight_rate_rtn) = 0;
+
+  /// Returns the wall-clock time spent in it so far, s.
+  [[nodiscard]] virtual double wall_s() const = 0;
+};
 
 }  // namespace vbar::twins

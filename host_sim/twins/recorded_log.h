@@ -11,7 +11,6 @@
 #include "fsw/packets/packet.h"
 #include "host_sim/twins/packet_log.h"
 #include "host_sim/twins/packet_source.h"
-#include "host_sim/twins/tile_source.h"
 
 namespace vbar::twins {
 

@@ -4,7 +4,7 @@
 #include <benchmark/benchmark.h>
 
 #include "hil_drivers/gige/camera/camera.h"
-#include "tests/unit/hil_drivers/gige/running_device.h"
+#include "tests/unit/emulators/gige/running_device.h"
 
 namespace {
 

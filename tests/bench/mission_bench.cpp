@@ -3,18 +3,22 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include <benchmark/benchmark.h>
+#include <unistd.h>
 
-#include "fsw/gnc/vbar_gnc.h"
-#include "host_sim/app/assemble.h"
-#include "host_sim/app/connect_flight_computer.h"
-#include "host_sim/sensors/sensor_kinds.h"
+#include "fsw/messaging/vbar_gnc.h"
+#include "host_sim/campaign_report/page.h"
+#include "host_sim/installation/sensor_kinds.h"
+#include "host_sim/simulation/assembly.h"
+#include "host_sim/simulation/flight_computer.h"
 #include "tests/support/paths.h"
+#include "tests/unit/host_sim/campaign_report/synthetic_campaign.h"
 
 namespace {
 
@@ -119,5 +123,22 @@ BENCHMARK_CAPTURE(gnc_step, ideal, "ideal_navigation")->Name("gnc/vbar/step")->U
 BENCHMARK_CAPTURE(gnc_step, experiment3, "experiment3")
     ->Name("gnc/vbar/step_experiment3")
     ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+
+// The page of a campaign: from campaign.json and results.csv on disk to campaign.html on disk, by number of cases.
+
+namespace {
+
+void write_page(benchmark::State& state) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("vbar_campaign_page_" + std::to_string(::getpid()));
+  vbar::campaign_report::test::write_synthetic_campaign(
+      folder, {.cases = static_cast<std::size_t>(state.range(0)), .failed_share = 0.02});
+  for (auto _ : state) vbar::campaign::write_page(folder);
+  state.counters["page_bytes"] = static_cast<double>(std::filesystem::file_size(folder / "campaign.html"));
+  std::filesystem::remove_all(folder);
+}
+BENCHMARK(write_page)->Name("campaign_report/page")->Arg(100)->Arg(1000)->Arg(10000)->Unit(benchmark::kMillisecond);
 
 }  // namespace

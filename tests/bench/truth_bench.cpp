@@ -9,7 +9,7 @@
 
 #include "host_sim/truth/earth/earth_rotation.h"
 #include "host_sim/truth/earth/time_scales.h"
-#include "host_sim/truth/forces/gravity_field.h"
+#include "host_sim/truth/forces/gravitation.h"
 #include "host_sim/truth/truth_model.h"
 #include "tests/support/paths.h"
 
@@ -113,7 +113,7 @@ void one_orbit_two_spacecraft(benchmark::State& state) {
 }
 
 /// What a flight under drag, radiation pressure, Sun and Moon costs; the error after a day at this tolerance is below a
-/// metre (tests/unit/host_sim/truth/day_error_test.cpp).
+/// metre (tests/unit/host_sim/truth/truth_model_test.cpp).
 struct Flight {
   int degree = 60;
   int spacecraft = 1;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "hil_drivers/grand/bench/generator/fault.h"
+#include "emulators/grand/generator/scenario.h"
 #include "host_sim/mission/mission_error.h"
 #include "tests/fuzz/fuzz_target.h"
 

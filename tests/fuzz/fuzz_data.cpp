@@ -8,14 +8,14 @@
 #include <system_error>
 
 #include "host_sim/mission/body_file.h"
-#include "host_sim/sensors/camera/camera_file.h"
+#include "host_sim/sensors/settings/camera_file.h"
 #include "host_sim/truth/atmosphere/nrlmsise00_tables.h"
 #include "host_sim/truth/earth/earth_orientation.h"
 #include "host_sim/truth/earth/space_weather.h"
 #include "host_sim/truth/forces/gravity_coefficients.h"
 #include "host_sim/twins/camera/star_sky.h"
 #include "host_sim/twins/gnss/ephemeris_file.h"
-#include "host_sim/twins/gnss/signal_noise.h"
+#include "host_sim/twins/gnss/tracking.h"
 #include "tests/fuzz/fuzz_file.h"
 
 namespace {

@@ -5,8 +5,8 @@
 #include <exception>
 #include <string_view>
 
-#include "host_sim/truth/earth/orientation_formats/orientation_formats.h"
-#include "host_sim/truth/earth/weather_formats/weather_formats.h"
+#include "host_sim/truth/earth/orientation_formats.h"
+#include "host_sim/truth/earth/weather_formats.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace {

@@ -5,7 +5,7 @@
 #include <exception>
 #include <string_view>
 
-#include "host_sim/twins/gnss/formats/ephemeris_formats.h"
+#include "host_sim/twins/gnss/ephemeris_file.h"
 #include "tests/fuzz/fuzz_target.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

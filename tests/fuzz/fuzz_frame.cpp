@@ -5,7 +5,6 @@
 #include <array>
 #include <span>
 
-#include "fsw/link/cobs.h"
 #include "fsw/link/frame.h"
 #include "fsw/packets/crc.h"
 #include "tests/fuzz/fuzz_target.h"

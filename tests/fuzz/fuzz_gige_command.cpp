@@ -4,8 +4,8 @@
 
 #include <stdexcept>
 
-#include "hil_drivers/gige/device/registers.h"
-#include "hil_drivers/gige/wire/gvcp.h"
+#include "emulators/gige/registers.h"
+#include "hil_drivers/gige/protocol/gvcp.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace {

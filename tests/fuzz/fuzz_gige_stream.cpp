@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "hil_drivers/gige/camera/pixel_padding.h"
-#include "hil_drivers/gige/wire/gvsp.h"
+#include "hil_drivers/gige/protocol/gvsp.h"
+#include "hil_drivers/gige/protocol/stream_setup.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace {

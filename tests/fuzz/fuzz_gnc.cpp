@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "fsw/gnc/vbar_gnc.h"
+#include "fsw/messaging/vbar_gnc.h"
 #include "fsw/packets/big_endian.h"
 #include "fsw/packets/messages.h"
 #include "tests/fuzz/fuzz_target.h"

@@ -14,11 +14,11 @@
 #include <string>
 #include <vector>
 
+#include "emulators/grand/receiver/receiver.h"
 #include "fsw/gnss/oem_stream.h"
-#include "hil_drivers/grand/bench/receiver/receiver.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/support/gnss_scene.h"
-#include "tests/unit/fsw/gnss/oem_bytes_writer.h"
+#include "tests/unit/fsw/gnss/oem_messages.h"
 
 namespace {
 

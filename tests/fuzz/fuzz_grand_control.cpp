@@ -7,10 +7,10 @@
 #include <string_view>
 #include <utility>
 
-#include "hil_drivers/grand/bench/control/skydel_commands.h"
+#include "emulators/grand/control/skydel_commands.h"
 #include "hil_drivers/grand/wire/simgen.h"
 #include "hil_drivers/grand/wire/template_format.h"
-#include "hil_drivers/wire/line_buffer.h"
+#include "hil_drivers/wire/bytes.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace {

@@ -3,8 +3,7 @@
 
 #include <cmath>
 
-#include "hil_drivers/grand/bench/samples/gnss_sdr/monitor_datagrams.h"
-#include "hil_drivers/grand/bench/samples/gnss_sdr/observable_epochs.h"
+#include "emulators/grand/samples/gnss_sdr_observables.h"
 #include "tests/fuzz/fuzz_target.h"
 
 using namespace vbar::grand::bench;

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "hil_drivers/grand/wire/simgen.h"
-#include "hil_drivers/grand/wire/skydel_hil.h"
+#include "hil_drivers/grand/wire/skydel.h"
 #include "hil_drivers/grand/wire/template_format.h"
 #include "tests/fuzz/fuzz_target.h"
 

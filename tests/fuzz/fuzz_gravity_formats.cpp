@@ -5,7 +5,7 @@
 #include <exception>
 #include <string_view>
 
-#include "host_sim/truth/forces/gravity_formats/gravity_formats.h"
+#include "host_sim/truth/forces/gravity_coefficients.h"
 #include "tests/fuzz/fuzz_target.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -3,8 +3,8 @@
 #include <string>
 #include <string_view>
 
+#include "host_sim/installation/sensor_kinds.h"
 #include "host_sim/mission/mission_error.h"
-#include "host_sim/sensors/sensor_kinds.h"
 #include "tests/fuzz/fuzz_target.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

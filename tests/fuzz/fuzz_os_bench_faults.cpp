@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "hil_drivers/optical_stimulator/bench/faults/bench_fault.h"
-#include "hil_drivers/optical_stimulator/bench/screen/xwd.h"
+#include "emulators/optical_stimulator/faults.h"
+#include "emulators/optical_stimulator/xwd.h"
 #include "host_sim/mission/mission_error.h"
 #include "tests/fuzz/fuzz_target.h"
 

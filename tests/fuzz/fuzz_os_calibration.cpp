@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "hil_drivers/optical_stimulator/calibration_file/bench_calibration.h"
+#include "hil_drivers/optical_stimulator/optics/calibration.h"
 #include "host_sim/mission/mission_error.h"
 #include "tests/fuzz/fuzz_target.h"
 
@@ -11,7 +11,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace vbar::optical_stimulator;
   try {
     const std::string_view text(reinterpret_cast<const char*>(data), size);
-    const BenchCalibration calibration = parse_calibration(text, "calibration.toml");
+    const StimulatorCalibration calibration = parse_calibration(text, "calibration.toml");
     const std::string written = toml_of(calibration);
     VBAR_FUZZ_EXPECT(toml_of(parse_calibration(written, "written.toml")) == written);
     const DisplayMap map(calibration.geometry);

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "hil_drivers/optical_stimulator/self_check/windowed_centroid.h"
-#include "hil_drivers/optical_stimulator/strip/strip_reader.h"
+#include "hil_drivers/optical_stimulator/imaging/self_check.h"
+#include "hil_drivers/optical_stimulator/pictures/frame_strip.h"
 #include "tests/fuzz/fuzz_target.h"
 
 using namespace vbar::optical_stimulator;

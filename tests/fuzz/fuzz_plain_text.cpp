@@ -6,7 +6,6 @@
 #include <string>
 #include <string_view>
 
-#include "host_sim/files/plain_text.h"
 #include "host_sim/files/text_lines.h"
 #include "tests/fuzz/fuzz_target.h"
 

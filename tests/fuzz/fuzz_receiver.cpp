@@ -13,7 +13,7 @@
 
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/support/receiver_promises.h"
-#include "tests/unit/fsw/gnss/oem_bytes_writer.h"
+#include "tests/unit/fsw/gnss/oem_messages.h"
 
 namespace {
 

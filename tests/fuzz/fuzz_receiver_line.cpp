@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "hil_drivers/grand/bursts.h"
-#include "hil_drivers/grand/receiver_port/command_answer.h"
+#include "hil_drivers/grand/receiver_port.h"
 #include "tests/fuzz/fuzz_target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

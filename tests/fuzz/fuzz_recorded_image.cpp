@@ -4,8 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "host_sim/twins/camera/recorded_image.h"
-#include "host_sim/twins/camera/tile_restorer.h"
+#include "host_sim/twins/camera/logged_image.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace {

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "hil_drivers/tron/bench/faults/bench_fault.h"
-#include "hil_drivers/tron/bench_file/bench_file.h"
+#include "emulators/tron/faults.h"
+#include "hil_drivers/tron/geometry/testbed_design.h"
 #include "host_sim/mission/mission_error.h"
 #include "tests/fuzz/fuzz_target.h"
 

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "hil_drivers/tron/calibration_file/calibration.h"
+#include "hil_drivers/tron/geometry/calibration.h"
 #include "host_sim/mission/mission_error.h"
 #include "tests/fuzz/fuzz_target.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "hil_drivers/tron/eki/wire/documents.h"
+#include "hil_drivers/tron/protocols/eki.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace {

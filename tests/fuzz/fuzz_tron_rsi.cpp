@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "hil_drivers/tron/rsi/wire/codec.h"
+#include "hil_drivers/tron/protocols/rsi_messages.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace {

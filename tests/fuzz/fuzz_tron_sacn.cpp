@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "hil_drivers/tron/bench/lights/source_arbiter.h"
-#include "hil_drivers/tron/sacn/wire/data_packet.h"
+#include "emulators/tron/lights.h"
+#include "hil_drivers/tron/protocols/sacn.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace {

@@ -3,8 +3,8 @@
 
 #include <stdexcept>
 
-#include "hil_drivers/tron/vicon/frame_history.h"
-#include "hil_drivers/tron/vicon/wire/object_stream.h"
+#include "hil_drivers/tron/protocols/vicon_receiver.h"
+#include "hil_drivers/tron/protocols/vicon_stream.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace {

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "hil_drivers/wire/line_buffer.h"
-#include "hil_drivers/zaber/device/device.h"
+#include "emulators/zaber/device.h"
+#include "hil_drivers/wire/bytes.h"
 #include "tests/fuzz/fuzz_target.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,13 +1,35 @@
 #pragma once
 // A calibration in which every figure has a value of its own.
 
-#include "hil_drivers/optical_stimulator/calibration_file/bench_calibration.h"
-#include "tests/support/display_map_example.h"
+#include <cmath>
+
+#include "hil_drivers/optical_stimulator/optics/calibration.h"
+#include "hil_drivers/optical_stimulator/optics/display_map.h"
 
 namespace vbar::optical_stimulator {
 
-inline BenchCalibration bench_calibration_example() {
-  BenchCalibration c;
+// A display map with every term: lens terms of the size of a bench's, and a field of degree 16.
+
+inline DisplayMapParameters display_map_example() {
+  DisplayMapParameters parameters;
+  parameters.lens.centre_px = {973.1, 590.2};
+  parameters.lens.scale_px = 5952.4;
+  parameters.lens.rotation_rad = 2.5e-3;
+  parameters.lens.tilt_rad = {4e-3, -6e-3};
+  parameters.lens.distortion = {0.9, -0.6, -1e-3, 7e-4, 2.0};
+  ChebyshevField& field = parameters.field;
+  field.degree = ChebyshevField::kDegreeMax;
+  field.low_px = {6.0, 4.0};
+  field.high_px = {1911.0, 1193.0};
+  for (std::size_t k = 0; k < ChebyshevField::term_count(field.degree); ++k) {
+    field.x_px.push_back(0.1 * std::sin(3.0 * static_cast<double>(k) + 1.0));
+    field.y_px.push_back(0.1 * std::cos(5.0 * static_cast<double>(k)));
+  }
+  return parameters;
+}
+
+inline StimulatorCalibration bench_calibration_example() {
+  StimulatorCalibration c;
   c.validity = {"2026-11-22T23:00:00Z",
                 true,
                 "Point Grey Research",

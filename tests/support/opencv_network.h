@@ -8,7 +8,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/dnn.hpp>
 
-#include "fsw/network/architecture.h"
+#include "fsw/vision/pose/architecture.h"
 
 namespace vbar::test {
 
@@ -30,8 +30,8 @@ class OpencvNetwork {
   }
 
   /// 1 x channels x rows x columns.
-  cv::Mat run(std::span<const float, fsw::network::kInputSamples> crop) {
-    const int shape[] = {1, 1, fsw::network::kInputSide, fsw::network::kInputSide};
+  cv::Mat run(std::span<const float, fsw::pose::kInputSamples> crop) {
+    const int shape[] = {1, 1, fsw::pose::kInputSide, fsw::pose::kInputSide};
     cv::Mat input(4, shape, CV_32F);
     std::memcpy(input.data, crop.data(), crop.size_bytes());
     net_.setInput(input);
@@ -41,10 +41,10 @@ class OpencvNetwork {
  private:
   /// OpenCV wants [out][in][row][column].
   [[nodiscard]] cv::Mat weights_of(int l) const {
-    const fsw::network::Layer& layer = fsw::network::kLayers[static_cast<std::size_t>(l)];
+    const fsw::pose::Layer& layer = fsw::pose::kLayers[static_cast<std::size_t>(l)];
     const int shape[] = {layer.out, layer.in, layer.kernel, layer.kernel};
     cv::Mat weights(4, shape, CV_32F);
-    const std::byte* from = file_.data() + fsw::network::offset_of_layer(l);
+    const std::byte* from = file_.data() + fsw::pose::offset_of_layer(l);
     for (int row = 0; row < layer.kernel; ++row) {
       for (int column = 0; column < layer.kernel; ++column) {
         for (int in = 0; in < layer.in; ++in) {
@@ -59,15 +59,15 @@ class OpencvNetwork {
   }
 
   [[nodiscard]] cv::Mat biases_of(int l) const {
-    const fsw::network::Layer& layer = fsw::network::kLayers[static_cast<std::size_t>(l)];
+    const fsw::pose::Layer& layer = fsw::pose::kLayers[static_cast<std::size_t>(l)];
     cv::Mat biases(1, layer.out, CV_32F);
-    std::memcpy(biases.data, file_.data() + fsw::network::offset_of_layer(l) + sizeof(float) * layer.weights(),
+    std::memcpy(biases.data, file_.data() + fsw::pose::offset_of_layer(l) + sizeof(float) * layer.weights(),
                 sizeof(float) * static_cast<std::size_t>(layer.out));
     return biases;
   }
 
   int add_layer(int l, int input) {
-    const fsw::network::Layer& layer = fsw::network::kLayers[static_cast<std::size_t>(l)];
+    const fsw::pose::Layer& layer = fsw::pose::kLayers[static_cast<std::size_t>(l)];
     cv::dnn::LayerParams params;
     params.set("kernel_size", layer.kernel);
     params.set("stride", layer.stride);

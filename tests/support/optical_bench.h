@@ -7,10 +7,10 @@
 #include <memory>
 #include <vector>
 
-#include "hil_drivers/optical_stimulator/bench/optical_path.h"
-#include "hil_drivers/optical_stimulator/calibrate/geometry_fit.h"
-#include "hil_drivers/optical_stimulator/calibration_file/bench_calibration.h"
-#include "hil_drivers/optical_stimulator/exchange/devices.h"
+#include "emulators/optical_stimulator/optical_path.h"
+#include "hil_drivers/optical_stimulator/calibration/geometry_fit.h"
+#include "hil_drivers/optical_stimulator/imaging/image_exchange.h"
+#include "hil_drivers/optical_stimulator/optics/calibration.h"
 #include "host_sim/twins/camera/optics.h"
 
 namespace vbar::optical_stimulator {
@@ -51,9 +51,9 @@ class PathBench final : public Screen, public FrameCamera {
 
 /// The zeros of the rails are taken as exact. `camera`: of the bench (camera_of); `of_mission`: whose geometry the
 /// flight software has.
-inline BenchCalibration true_calibration(const bench::BenchSettings& settings,
-                                         const twins::camera::CameraSettings& camera,
-                                         const twins::camera::CameraSettings& of_mission) {
+inline StimulatorCalibration true_calibration(const bench::BenchSettings& settings,
+                                              const twins::camera::CameraSettings& camera,
+                                              const twins::camera::CameraSettings& of_mission) {
   using fsw::Vector2;
   const int width = settings.display.width, height = settings.display.height;
   const bench::ErrorField field(settings.field, settings.seed, width, height);
@@ -63,7 +63,7 @@ inline BenchCalibration true_calibration(const bench::BenchSettings& settings,
   state.display_mm = settings.lenses.infinity_mm();
   optics.set_state(state);
 
-  BenchCalibration calibration;
+  StimulatorCalibration calibration;
   Validity& validity = calibration.validity;
   validity.date_utc = "2026-01-01T00:00:00Z";
   validity.emulated = true;

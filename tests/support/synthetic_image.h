@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "fsw/imaging/image.h"
+#include "fsw/vision/imaging/image.h"
 
 namespace vbar::test {
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "hil_drivers/grand/bench/rf_block.h"
+#include "emulators/grand/radio_field/rf_block.h"
 #include "host_sim/twins/gnss/signal_path.h"
 #include "tests/support/gnss_scene.h"
 

@@ -8,9 +8,9 @@
 
 #include <Eigen/Geometry>
 
-#include "fsw/imaging/camera_model.h"
-#include "fsw/pose/keypoint.h"
-#include "fsw/pose/pnp.h"
+#include "fsw/vision/imaging/camera_model.h"
+#include "fsw/vision/pose/keypoint.h"
+#include "fsw/vision/pose/pnp.h"
 
 namespace vbar::test {
 

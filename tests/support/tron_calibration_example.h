@@ -1,7 +1,7 @@
 #pragma once
 // A calibration of TRON in which every figure differs from its default.
 
-#include "hil_drivers/tron/calibration_file/calibration.h"
+#include "hil_drivers/tron/geometry/calibration.h"
 
 namespace vbar::tests {
 

@@ -28,7 +28,7 @@ if(VBAR_TARGET STREQUAL "host")
   if(others)
     install(TARGETS ${others} LIBRARY DESTINATION lib/vbar)
   endif()
-  install(FILES ${PROJECT_SOURCE_DIR}/fsw/gnc/vbar_gnc.h ${VBAR_C_PACKETS}/vbar_packets.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vbar)
+  install(FILES ${PROJECT_SOURCE_DIR}/fsw/messaging/vbar_gnc.h ${VBAR_C_PACKETS}/vbar_packets.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/vbar)
   install(FILES ${PROJECT_SOURCE_DIR}/fsw/packets/vbar.lcm ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/NOTICE
     DESTINATION ${CMAKE_INSTALL_DATADIR}/vbar)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/data ${PROJECT_SOURCE_DIR}/missions DESTINATION ${CMAKE_INSTALL_DATADIR}/vbar)
@@ -48,7 +48,7 @@ if(VBAR_TARGET STREQUAL "host")
     ${PROJECT_SOURCE_DIR}/toolchains/arm-none-eabi-zynq7000.cmake DESTINATION ${package})
 elseif(VBAR_TARGET STREQUAL "zynq7000")
   install(TARGETS vbar_zynq7000 RUNTIME DESTINATION ${board})
-  install(TARGETS vbar_zynq7000_board vbar_zynq7000_main vbar_board_common vbar_fsw_link vbar_fsw_packets vbar_packets
+  install(TARGETS vbar_zynq7000_board vbar_zynq7000_main vbar_boards_common vbar_fsw_link vbar_fsw_packets vbar_packets
     ARCHIVE DESTINATION ${board})
   set(source ${PROJECT_SOURCE_DIR}/boards/zynq7000)
   install(FILES ${source}/zynq7000.ld ${source}/check_image.cmake ${source}/zynq7000_image.cmake ${source}/boot.bif ${source}/jtag.gdb DESTINATION ${board})

@@ -62,53 +62,115 @@ if(VBAR_TARGET STREQUAL "host")
   find_package(fmt REQUIRED)
   add_library(vbar_host_options INTERFACE)
   target_link_libraries(vbar_host_options INTERFACE vbar_options fmt::fmt)
+  include(vbar_host_packages)
   include(vbar_optional_libraries)
 endif()
 
 include(vbar_precompiled_headers)
 
-# vbar_fsw_library(name SOURCES ... DEPENDS ...): a static library of flight code. The set common to all targets (fsw and
-# boards/common) is in the global property VBAR_FLIGHT_LIBRARIES, which the target flight_code and the flight rules go by.
-function(vbar_fsw_library name)
+# vbar_target_of(result folder): the target of a module is named after its folder: fsw/gnss is vbar_fsw_gnss. Other names stay.
+function(vbar_target_of result)
+  set(targets "")
+  foreach(name IN LISTS ARGN)
+    if(name MATCHES "^(fsw|boards|pil_bridge|host_sim|hil_drivers|emulators)(/|$)")
+      string(REPLACE "/" "_" name "vbar_${name}")
+    endif()
+    list(APPEND targets ${name})
+  endforeach()
+  set(${result} ${targets} PARENT_SCOPE)
+endfunction()
+
+# vbar_flight_library(name SOURCES source... DEPENDS name...), vbar_host_library(...): a static library with the flags of flight
+# code, or of host code. DEPENDS: modules by their folders, other targets by their names.
+function(vbar_flight_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  vbar_target_of(depends ${ARG_DEPENDS})
   add_library(${name} STATIC ${ARG_SOURCES})
   if(NOT VBAR_TARGET STREQUAL "zynq7000")
     set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)  # a shared library may be made of it
   endif()
-  target_link_libraries(${name} PRIVATE vbar_flight_options PUBLIC ${ARG_DEPENDS})
+  target_link_libraries(${name} PRIVATE vbar_flight_options PUBLIC ${depends})
   target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR})
   vbar_use_precompiled(${name} vbar_flight_precompiled)
-  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
-  if(folder MATCHES "^(fsw/|boards/common$)")
-    set_property(GLOBAL APPEND PROPERTY VBAR_FLIGHT_LIBRARIES ${name})
-  endif()
 endfunction()
-
-# vbar_host_library(name SOURCES ... DEPENDS ...): a static library of host code.
 function(vbar_host_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  vbar_target_of(depends ${ARG_DEPENDS})
   add_library(${name} STATIC ${ARG_SOURCES})
-  target_link_libraries(${name} PUBLIC vbar_host_options ${ARG_DEPENDS})
+  target_link_libraries(${name} PUBLIC vbar_host_options ${depends})
   vbar_use_precompiled(${name} vbar_host_precompiled)
 endfunction()
 
-# vbar_test(name SOURCES ... DEPENDS ... [LABELS ...]): a googletest program, one ctest entry a test case (with a
-# sanitizer: one for the program). Without LABELS it is a unit test. Its module (tests/unit/fsw/gnss: fsw/gnss) is a label
-# as well: ctest -L '^fsw/gnss$'.
-function(vbar_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LABELS" ${ARGN})
+# vbar_module(folder [EXCEPT path...] [SOURCES source...] [DEPENDS name...]): the library of a folder (path from the top of
+# the project): of the .cpp in it and below it, but for files and subfolders EXCEPT (relative to it), and of generated or
+# other SOURCES. Without any it has headers only. Modules of fsw and boards are flight code, all others host code. The set of
+# flight code common to all targets (fsw and boards/common) is in the global property VBAR_FLIGHT_LIBRARIES, which the
+# target flight_code and the flight rules go by.
+function(vbar_module folder)
+  cmake_parse_arguments(ARG "" "" "EXCEPT;SOURCES;DEPENDS" ${ARGN})
+  vbar_target_of(name ${folder})
+  set(place ${PROJECT_SOURCE_DIR}/${folder})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${place}/*.cpp)
+  foreach(except IN LISTS ARG_EXCEPT)
+    list(FILTER sources EXCLUDE REGEX "^${place}/${except}(/|$)")
+  endforeach()
+  list(APPEND sources ${ARG_SOURCES})
+  if(NOT sources)
+    vbar_target_of(depends ${ARG_DEPENDS})
+    add_library(${name} INTERFACE)
+    target_link_libraries(${name} INTERFACE ${depends})
+    target_include_directories(${name} INTERFACE ${PROJECT_SOURCE_DIR})
+  elseif(folder MATCHES "^(fsw|boards)/")
+    vbar_flight_library(${name} SOURCES ${sources} DEPENDS ${ARG_DEPENDS})
+    if(folder MATCHES "^(fsw/|boards/common$)")
+      set_property(GLOBAL APPEND PROPERTY VBAR_FLIGHT_LIBRARIES ${name})
+    endif()
+  else()
+    vbar_host_library(${name} SOURCES ${sources} DEPENDS ${ARG_DEPENDS})
+  endif()
+endfunction()
+
+# vbar_program(name SOURCES source... DEPENDS name...): a program of host code in the top of the build folder.
+function(vbar_program name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  vbar_target_of(depends ${ARG_DEPENDS})
   add_executable(${name} ${ARG_SOURCES})
-  target_link_libraries(${name} PRIVATE vbar_options vbar_test_support ${ARG_DEPENDS} GTest::gtest_main GTest::gmock)
+  target_link_libraries(${name} PRIVATE vbar_options ${depends})
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
+endfunction()
+
+# vbar_test(name ROOMS folder... [EXCEPT file...] [SOURCES source...] [DEPENDS name...] [LABELS ...]): a googletest program of the
+# *_test.cpp in the folders (below tests/; not of those below them), one ctest entry a test case (with a sanitizer: four for the program).
+# Without LABELS it is a unit test. Its folders are labels as well (ctest -L '^fsw/gnss$' for tests/unit/fsw/gnss), and
+# unit_test_modules.txt lists them for ci/quick.sh. EXCEPT and SOURCES are below tests/ too.
+function(vbar_test name)
+  cmake_parse_arguments(ARG "" "" "ROOMS;EXCEPT;SOURCES;DEPENDS;LABELS" ${ARGN})
+  set(tests ${PROJECT_SOURCE_DIR}/tests)
+  set(modules ${ARG_ROOMS})
+  list(TRANSFORM modules REPLACE "^unit/" "")
+  set(sources "")
+  foreach(room IN LISTS ARG_ROOMS)
+    file(GLOB files CONFIGURE_DEPENDS ${tests}/${room}/*_test.cpp)
+    list(APPEND sources ${files})
+  endforeach()
+  list(TRANSFORM ARG_EXCEPT PREPEND ${tests}/)
+  if(ARG_EXCEPT)
+    list(REMOVE_ITEM sources ${ARG_EXCEPT})
+  endif()
+  list(TRANSFORM ARG_SOURCES REPLACE "^([^/].*)" "${tests}/\\1")
+  vbar_target_of(depends ${ARG_DEPENDS})
+  add_executable(${name} ${sources} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE vbar_options vbar_test_support ${depends} GTest::gtest_main GTest::gmock)
   target_compile_options(${name} PRIVATE ${VBAR_TEST_OPTIONS})
   vbar_use_precompiled(${name} vbar_test_support)
-  file(RELATIVE_PATH module ${PROJECT_SOURCE_DIR}/tests ${CMAKE_CURRENT_SOURCE_DIR})
-  string(REGEX REPLACE "^unit/" "" module ${module})
   if(NOT ARG_LABELS)
     set(ARG_LABELS unit)
     add_dependencies(unit_tests ${name})
-    set_property(GLOBAL APPEND PROPERTY VBAR_UNIT_TEST_MODULES "${module} ${name}")
+    foreach(module IN LISTS modules)
+      set_property(GLOBAL APPEND PROPERTY VBAR_UNIT_TEST_MODULES "${module} ${name}")
+    endforeach()
   endif()
-  list(APPEND ARG_LABELS ${module})
+  list(APPEND ARG_LABELS ${modules})
   if(VBAR_SANITIZE)
     # A sanitized program takes longer to start than most test cases to run: four entries for all of them, which share the
     # processors better than one.

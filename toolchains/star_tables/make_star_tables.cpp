@@ -3,8 +3,8 @@
 //
 //   make_star_tables STAR_FILE EPOCH TABLES SIZES
 //
-// EPOCH is a Julian year; TABLES is the binary file included by fsw/stars/star_tables.S (little-endian, the order of
-// struct StarTables); SIZES is a header with the lengths of its arrays.
+// EPOCH is a Julian year; TABLES is the binary file included by fsw/vision/stars/star_tables.S (little-endian, the
+// order of struct StarTables); SIZES is a header with the lengths of its arrays.
 
 #include <bit>
 #include <charconv>
@@ -17,7 +17,7 @@
 #include <string>
 #include <string_view>
 
-#include "fsw/stars/table_layout.h"
+#include "fsw/vision/stars/table_layout.h"
 #include "sky_tables.h"
 #include "star_file.h"
 

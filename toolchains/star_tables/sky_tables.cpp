@@ -7,7 +7,7 @@
 #include <numbers>
 #include <tuple>
 
-#include "fsw/stars/table_layout.h"
+#include "fsw/vision/stars/table_layout.h"
 
 namespace vbar::star_tables {
 namespace {

@@ -1,4 +1,4 @@
-/* A test article that is not vbar's: the interface of fsw/gnc/vbar_gnc.h in plain C, without a line of vbar's own
+/* A test article that is not vbar's: the interface of fsw/messaging/vbar_gnc.h in plain C, without a line of vbar's own
  * flight software. It shows all that another GNC stack needs to fly here, and no more: given the states of both
  * spacecraft, a proportional-derivative law closes in on a point behind the target and stays there.
  *

@@ -7,7 +7,7 @@
 #include <array>
 #include <new>
 
-#include "fsw/gnc/vbar_gnc.h"
+#include "fsw/messaging/vbar_gnc.h"
 #include "fsw/packets/big_endian.h"
 #include "fsw/packets/packet.h"
 

@@ -6,7 +6,7 @@
 #include <new>
 
 #include "fsw/core/result.h"
-#include "fsw/gnc/vbar_gnc.h"
+#include "fsw/messaging/vbar_gnc.h"
 
 namespace {
 

@@ -10,9 +10,8 @@
 #include <fmt/format.h>
 
 #include "hil_drivers/gige/camera/aravis_features.h"
-#include "hil_drivers/gige/camera/camera_presence.h"
-#include "hil_drivers/gige/camera/pixel_padding.h"
-#include "hil_drivers/gige/wire/gvsp.h"
+#include "hil_drivers/gige/protocol/gvsp.h"
+#include "hil_drivers/gige/protocol/stream_setup.h"
 
 namespace vbar::gige {
 namespace {

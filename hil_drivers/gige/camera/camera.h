@@ -10,8 +10,8 @@
 #include <variant>
 #include <vector>
 
-#include "hil_drivers/gige/camera/packet_pacing.h"
-#include "hil_drivers/gige/wire/pixels.h"
+#include "hil_drivers/gige/protocol/gvsp.h"
+#include "hil_drivers/gige/protocol/stream_setup.h"
 #include "host_sim/twins/camera/camera_settings.h"
 
 namespace vbar::gige {

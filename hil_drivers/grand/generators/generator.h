@@ -91,4 +91,18 @@ struct GeneratorKind {
 /// Returns all kinds of this program; the first is the default.
 [[nodiscard]] std::span<const GeneratorKind* const> generator_kinds();
 
+// Skydel (Safran): one instance per vehicle, each with a control connection and a port for samples; the first is the
+// main instance of the start by 1PPS.
+
+extern const GeneratorKind kSkydelKind;
+
+// Spirent SimGEN: one connection for commands; motion of all vehicles as datagrams to the UDP port of the same number
+// in real time, as lines of the connection in lock-step.
+
+extern const GeneratorKind kSimgenKind;
+
+// Generator whose datagrams and control lines the mission file describes (IFEN: no interface document is public).
+
+extern const GeneratorKind kTemplateKind;
+
 }  // namespace vbar::grand

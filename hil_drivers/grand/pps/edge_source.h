@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "fsw/core/gps_time.h"
-#include "host_sim/engine/wall_clock.h"
+#include "host_sim/engine/clock.h"
 
 namespace vbar::grand {
 
@@ -58,5 +58,17 @@ struct EdgeSourceKind {
 
 /// Returns "kernel:DEVICE", "socket:PATH", "timer".
 [[nodiscard]] std::string edge_source_forms();
+
+// Edges that the kernel has time-stamped at a PPS device (RFC 2783).
+
+extern const EdgeSourceKind kKernelEdges;  ///< "kernel:/dev/pps0"
+
+// Edges that the emulator announces on a Unix datagram socket (../wire/pps_datagram.h).
+
+extern const EdgeSourceKind kSocketEdges;  ///< "socket:/run/bench/pps.sock"
+
+// Edges every second of the host's own clock, for a testbed without a PPS line.
+
+extern const EdgeSourceKind kTimerEdges;  ///< "timer"
 
 }  // namespace vbar::grand

@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-#include "host_sim/truth/earth/geodetic.h"
+#include "host_sim/truth/earth/earth_rotation.h"
 
 namespace vbar::grand {
 namespace {

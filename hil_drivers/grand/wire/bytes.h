@@ -2,7 +2,6 @@
 // Names of the common byte formats, for the formats of this testbed.
 
 #include "hil_drivers/wire/bytes.h"
-#include "hil_drivers/wire/line_buffer.h"
 
 namespace vbar::grand::wire {
 

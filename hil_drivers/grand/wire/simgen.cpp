@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "hil_drivers/grand/wire/calendar.h"
-#include "hil_drivers/grand/wire/skydel_hil.h"
+#include "hil_drivers/grand/wire/skydel.h"
 #include "hil_drivers/grand/wire/text_pattern.h"
 
 namespace vbar::grand::wire {

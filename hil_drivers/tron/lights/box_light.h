@@ -2,12 +2,32 @@
 // Powers of the light boxes with which they shine on the target as the Earth does.
 
 #include <array>
+#include <vector>
 
 #include <Eigen/Core>
 
-#include "hil_drivers/tron/bench_file/bench_file.h"
+#include "fsw/core/types.h"
+#include "hil_drivers/tron/geometry/testbed_design.h"
 
 namespace vbar::tron {
+
+// Least squares with bounds.
+
+struct BoundedSolution {
+  Eigen::VectorXd x;
+  double residual_norm = 0.0;
+  bool has_converged = false;
+};
+
+/// Minimises |A x - b| over 0 <= x <= 1: active set (Stark and Parker 1995, "Bounded-variable least squares: an
+/// algorithm and applications"), on the triangular factor of A. A has at least as many rows as columns. A variable
+/// whose column is zero stays 0. Throws std::invalid_argument for a number that is not finite.
+[[nodiscard]] BoundedSolution bounded_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+
+// Directions spread evenly over the sphere.
+
+/// Returns the 162 corners of an icosahedron whose edges are divided into four, on the unit sphere.
+[[nodiscard]] const std::vector<fsw::Vector3>& sphere_normals();
 
 /// Holds the light of the Earth at the target in laboratory axes.
 struct EarthLight {
@@ -27,7 +47,7 @@ struct BoxPowers {
 class BoxLight {
  public:
   /// `full_light`: light of each box, relative to full power as designed.
-  explicit BoxLight(const BenchFile& bench, const std::array<double, kBoxes>& full_light = all_full());
+  explicit BoxLight(const TestbedDesign& bench, const std::array<double, kBoxes>& full_light = all_full());
 
   /// Returns irradiances by box i at full power as designed, column i, to that of the lamp at full power. `centre_L`:
   /// centre of the target, m.

@@ -1,13 +1,24 @@
 #pragma once
 // Light of an image in the laboratory: lamp as the Sun, boxes as the Earth.
 
-#include "hil_drivers/tron/bench_file/bench_file.h"
-#include "hil_drivers/tron/calibration_file/calibration.h"
-#include "hil_drivers/tron/exchange/devices.h"
+#include <array>
+#include <cstdint>
+
+#include "hil_drivers/tron/geometry/calibration.h"
+#include "hil_drivers/tron/geometry/testbed_design.h"
+#include "hil_drivers/tron/imaging/devices.h"
 #include "hil_drivers/tron/lights/box_light.h"
-#include "hil_drivers/tron/lights/photometric_table.h"
+#include "hil_drivers/tron/lights/photometry.h"
 
 namespace vbar::tron {
+
+// Values of 16 bits for the lights of the testbed: lamp power, lamp place, boxes 1 to 10.
+
+using LightValues = std::array<std::uint16_t, 2 + kBoxes>;
+
+/// Limits powers to those that a source can give, azimuths to the lamp's arc. A number that is not finite gives
+/// zero.
+[[nodiscard]] LightValues light_values(const LightLevels& levels, const Lamp& lamp, const PhotometricTable& table);
 
 /// Returns the factor by which an exposure is longer in the laboratory than in orbit.
 [[nodiscard]] inline double exposure_factor(const Lamp& lamp) {
@@ -16,7 +27,7 @@ namespace vbar::tron {
 
 class RoomLight final : public LightPlanner {
  public:
-  RoomLight(const BenchFile& bench, const Calibration& calibration, const PhotometricTable& table);
+  RoomLight(const TestbedDesign& bench, const Calibration& calibration, const PhotometricTable& table);
 
   /// Returns levels at which the lamp shines as bright as the visible part of the Sun, at its azimuth of `place`; the
   /// boxes as the Earth.

@@ -7,10 +7,9 @@
 #include <fmt/core.h>
 
 #include "hil_drivers/testbeds.h"
-#include "hil_drivers/tron/laboratory_calibration/calibrate_command.h"
-#include "hil_drivers/tron/plan/plan_command.h"
-#include "host_sim/app/exit_codes.h"
+#include "hil_drivers/tron/program/commands.h"
 #include "host_sim/mission/mission_error.h"
+#include "host_sim/simulation/exit_codes.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "hil_drivers/tron/rsi/wire/context_xml.h"
+#include "hil_drivers/tron/protocols/rsi_messages.h"
 
 namespace vbar::tron {
 

@@ -1,19 +1,43 @@
-// Telemetry of images as rows, the truth of their exposures beside it, and pictures of a few.
-
+#include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <optional>
 
+#include "fsw/math/math.h"
 #include "fsw/packets/messages.h"
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/sensors/camera/camera_kind.h"
-#include "host_sim/sensors/camera/gallery_keeper.h"
-#include "host_sim/sensors/camera/image_rows.h"
-#include "host_sim/sensors/camera/image_truth.h"
-#include "host_sim/sensors/camera/kept_truth.h"
-#include "host_sim/sensors/camera/known_camera.h"
+#include "host_sim/sensors/camera/camera_rows.h"
+#include "host_sim/sensors/camera/camera_truth.h"
+#include "host_sim/sensors/camera/image_gallery.h"
+#include "host_sim/sensors/camera/make_camera.h"
 #include "host_sim/sensors/camera/pose_gallery.h"
-#include "host_sim/sensors/camera/pose_truth.h"
 
 namespace vbar::sensors {
+
+namespace {
+
+using fsw::math::kArcsecond;
+
+}  // namespace
+
+void append_objects(double exposure_s, const telemetry_objects& objects, std::vector<ObjectRow>& rows) {
+  const int count = std::min<int>(objects.count, static_cast<int>(std::size(objects.kind)));
+  for (int k = 0; k < count; ++k)
+    rows.push_back({exposure_s, objects.image, k, objects.kind[k], objects.star[k], objects.x_px[k], objects.y_px[k]});
+}
+
+void append_residuals(const ImageRow& row, std::vector<report::ResidualRow>& rows) {
+  if (!(row.nis > 0.0)) return;  // the filter did not run
+  const double sigma_arcsec = std::hypot(row.prefit[0], row.prefit[1]) / std::sqrt(row.nis) / kArcsecond;
+  const char* const sensors[] = {"bearing_in_plane_arcsec", "bearing_cross_plane_arcsec"};
+  for (const std::size_t axis : {0U, 1U})
+    rows.push_back(
+        {row.time_s, sensors[axis], row.prefit[axis] / kArcsecond, row.postfit[axis] / kArcsecond, sigma_arcsec});
+}
+
+// Telemetry of images as rows, the truth of their exposures beside it, and pictures of a few.
+
 namespace {
 
 /// Telemetry of a step on an image, in two packets.
@@ -55,7 +79,7 @@ class CameraEvaluation final : public Evaluation {
       known_target_ = target_model_of(context.mission, camera, mission::data_directory());
   }
 
-  void on_measured(const twins::TruthSnapshot& truth) override { kept_truth_.keep(truth); }
+  void on_measured(const twins::TruthSnapshot& truth) override { truth_recorder_.keep(truth); }
 
   void on_inputs(fsw::GpsTime time, std::span<const twins::Packet> inputs) override {
     gallery_.on_inputs(time, inputs);
@@ -79,7 +103,7 @@ class CameraEvaluation final : public Evaluation {
     row.step_time_s = step_time_s;
     const telemetry_objects* const objects =
         told.objects && told.objects->image == told.image->image ? &*told.objects : nullptr;
-    const auto truth = kept_truth_.take(told.exposure);
+    const auto truth = truth_recorder_.take(told.exposure);
     if (truth) add_truth(row, *told.image, objects, known_camera_, context_.servicer, *truth);
     if (row.fate >= telemetry_image::kEditFilter) append_residuals(row, record_.residuals);
     if (objects != nullptr) append_objects(row.time_s, *objects, record_.tables.rows<ObjectRow>());
@@ -92,7 +116,7 @@ class CameraEvaluation final : public Evaluation {
     row.time_s = seconds_of(told.exposure);
     row.step_time_s = step_time_s;
     append_keypoints(row.time_s, *told.pose, record_.tables.rows<KeypointRow>());
-    const auto truth = kept_truth_.take(told.exposure);
+    const auto truth = truth_recorder_.take(told.exposure);
     if (truth && known_target_)
       add_truth(row, record_.tables.rows<KeypointRow>(), *told.pose, known_target_->keypoints_body_m, known_camera_,
                 context_.servicer, *truth);
@@ -103,10 +127,10 @@ class CameraEvaluation final : public Evaluation {
   EvaluationContext context_;
   report::RunRecord& record_;
   CameraSensor known_camera_;
-  KeptTruth kept_truth_;
+  TruthRecorder truth_recorder_;
   std::optional<target_model> known_target_;  ///< as telecommanded, with navigation by the pose network
   std::uint8_t unit_;
-  GalleryKeeper gallery_;
+  GalleryRecorder gallery_;
   PoseGallery pose_gallery_;
 };
 

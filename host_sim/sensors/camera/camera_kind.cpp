@@ -10,7 +10,7 @@
 #include "fsw/math/math.h"
 #include "host_sim/sensors/camera/camera_report.h"
 #include "host_sim/sensors/camera/make_camera.h"
-#include "host_sim/sensors/packets_of_testbed.h"
+#include "host_sim/sensors/sensor_kind.h"
 #include "host_sim/twins/recorded_log.h"
 
 namespace vbar::sensors {

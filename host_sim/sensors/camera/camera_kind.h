@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "fsw/packets/messages.h"
-#include "host_sim/engine/cadence.h"
+#include "host_sim/engine/clock.h"
 #include "host_sim/sensors/sensor_kind.h"
 #include "host_sim/twins/camera/camera_settings.h"
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "host_sim/report/extension.h"
-#include "host_sim/report/html_page.h"
-#include "host_sim/report/paper_column.h"
+#include "host_sim/report/plots/html_page.h"
+#include "host_sim/report/published_figures.h"
 #include "host_sim/report/run_record.h"
 #include "host_sim/sensors/camera/camera_rows.h"
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "fsw/packets/messages.h"
 #include "host_sim/report/run_columns.h"
 
 namespace vbar::sensors {
@@ -135,5 +136,14 @@ void visit_columns(Row& row, Visitor& visit) {
   visit(report::ColumnName{"error_x_px", "measured minus true"}, row.error_x_px);
   visit(report::ColumnName{"error_y_px", "measured minus true"}, row.error_y_px);
 }
+
+// Telemetry about images as rows of a record.
+
+void append_objects(double exposure_s, const telemetry_objects& objects, std::vector<ObjectRow>& rows);
+
+/// Appends the residuals of an image's bearing in the servicer's orbital plane and across it, in arcseconds, with the
+/// standard deviation of the innovation along the residual vector: |prefit| / sqrt(NIS). None for a bearing of the
+/// batch.
+void append_residuals(const ImageRow& row, std::vector<report::ResidualRow>& rows);
 
 }  // namespace vbar::sensors

@@ -1,5 +1,6 @@
 #include "host_sim/sensors/camera/make_camera.h"
 
+#include <algorithm>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -7,11 +8,27 @@
 #include <vector>
 
 #include "host_sim/mission/body_file.h"
+#include "host_sim/sensors/installed_testbeds.h"
+#include "host_sim/twins/camera/logged_image.h"
 #include "host_sim/twins/camera/model/cad_objects.h"
 #include "host_sim/twins/camera/scene.h"
-#include "host_sim/twins/camera/tile_restorer.h"
 
 namespace vbar::sensors {
+
+KnownCamera known_camera(const CameraSensor& camera, const mission::Mission& mission,
+                         const std::filesystem::path& data_directory) {
+  KnownCamera known{camera, std::nullopt};
+  const testbeds::TestbedKind* const testbed = testbeds::find_testbed(camera.source);
+  if (testbed == nullptr || testbed->calibrated_camera == nullptr) return known;
+  const auto of_mission = std::ranges::find(mission.testbeds, testbed->name, &mission::Testbed::name);
+  if (of_mission == mission.testbeds.end())
+    throw std::logic_error("the mission has no [testbed." + std::string(testbed->name) + "]");
+  const auto calibrated = testbed->calibrated_camera(*of_mission->settings, mission, data_directory, camera.settings);
+  known.sensor.settings = calibrated.settings;
+  known.centroid_floor_px = calibrated.centroid_floor_px;
+  return known;
+}
+
 namespace {
 
 using mission::Mission;

@@ -1,17 +1,32 @@
 #pragma once
-// Cameras of a mission as packet sources, and the tiles of their images out of a log.
+// A camera as calibrated on the ground: the mission's camera or, for a testbed that calibrates its camera, the
+// calibrated one.
 
+#include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 
+#include "host_sim/mission/mission.h"
 #include "host_sim/sensors/camera/camera_kind.h"
 #include "host_sim/twins/camera/camera_sensor.h"
 #include "host_sim/twins/camera/image_maker.h"
-#include "host_sim/twins/camera/projection.h"
+#include "host_sim/twins/camera/optics.h"
 #include "host_sim/twins/camera/scene.h"
-#include "host_sim/twins/tile_source.h"
+#include "host_sim/twins/packet_log.h"
 
 namespace vbar::sensors {
+
+struct KnownCamera {
+  CameraSensor sensor;
+  std::optional<double> centroid_floor_px;
+};
+
+/// Throws MissionError for a calibration that cannot be read.
+[[nodiscard]] KnownCamera known_camera(const CameraSensor& camera, const mission::Mission& mission,
+                                       const std::filesystem::path& data_directory);
+
+// Cameras of a mission as packet sources, and the tiles of their images out of a log.
 
 /// Makes the scene of all objects that the spacecraft's camera can see. Null projection: through the lens of `camera`.
 /// Throws what data files throw.

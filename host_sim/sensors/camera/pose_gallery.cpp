@@ -1,16 +1,114 @@
 #include "host_sim/sensors/camera/pose_gallery.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <span>
 #include <string>
 
 #include <fmt/format.h>
 
-#include "fsw/pose/spacecraft_pose_network.h"
+#include "fsw/vision/pose/crop.h"
+#include "fsw/vision/pose/spacecraft_pose_network.h"
 #include "host_sim/mission/data_directory.h"
-#include "host_sim/report/code_names.h"
+#include "host_sim/report/plots/png.h"
+#include "host_sim/report/words.h"
 #include "host_sim/sensors/camera/camera_kind.h"
-#include "host_sim/sensors/camera/pose_picture.h"
 
 namespace vbar::sensors {
+
+namespace {
+
+using fsw::Status;
+using fsw::Vector2;
+using fsw::pose::CropRegion;
+using fsw::pose::kCropSide;
+using fsw::pose::kKeypoints;
+using fsw::pose::kMapSide;
+using report::Colour;
+using report::ColourPicture;
+
+constexpr int kSamplePx = kCropPicturePx / kCropSide;
+constexpr int kCellPx = kSamplePx * kCropSide / kMapSide;
+
+/// Eleven hues around the circle, neighbours in number far apart in hue.
+Colour colour_of(int keypoint) {
+  const double hue = std::fmod(keypoint * 4.0, kKeypoints) / kKeypoints * 6.0;
+  const auto channel = [&](double shift) {
+    const double away = std::abs(std::remainder(hue - shift, 6.0));
+    return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(2.0 - away, 0.0, 1.0)));
+  };
+  return {channel(0.0), channel(2.0), channel(4.0)};
+}
+
+void set_grey(ColourPicture& picture, int x, int y, double share) {
+  const auto grey = static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(share, 0.0, 1.0)));
+  picture.set(x, y, {grey, grey, grey});
+}
+
+/// Roots of the light, as the network gets them; all but the brightest thousandth below white.
+void draw_image(const fsw::imaging::ImageView& image, double black_dn, ColourPicture& picture) {
+  std::vector<std::uint16_t> sorted(image.pixels.begin(), image.pixels.end());
+  std::erase(sorted, fsw::imaging::kMissingPixel);
+  if (sorted.empty()) return;
+  const auto bright = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() * 999 / 1000);
+  std::ranges::nth_element(sorted, bright);
+  const double white = std::max(*bright - black_dn, 20.0);
+  for (int y = 0; y < image.frame.height; ++y)
+    for (int x = 0; x < image.frame.width; ++x) {
+      const std::uint16_t dn = image.pixels[static_cast<std::size_t>(y * image.frame.width + x)];
+      if (dn == fsw::imaging::kMissingPixel)
+        picture.set(x, y, {60, 30, 70});
+      else
+        set_grey(picture, x, y, std::sqrt(std::max(dn - black_dn, 0.0) / white));
+    }
+}
+
+void draw_crop(std::span<const float> samples, int left, ColourPicture& picture) {
+  const float most = std::max(*std::ranges::max_element(samples), 1.0F);
+  for (int y = 0; y < kCropPicturePx; ++y)
+    for (int x = 0; x < kCropPicturePx; ++x) {
+      const auto sample = static_cast<std::size_t>(y / kSamplePx * kCropSide + x / kSamplePx);
+      set_grey(picture, left + x, y, static_cast<double>(samples[sample] / most));
+    }
+}
+
+/// Each map over its own highest cell.
+void draw_map(std::span<const float> logits, const Colour& colour, double strength, int left, ColourPicture& picture) {
+  constexpr double kLeast = 0.02;
+  const float most = *std::ranges::max_element(logits);
+  for (int cell = 0; cell < kMapSide * kMapSide; ++cell) {
+    const double share = std::exp(static_cast<double>(logits[static_cast<std::size_t>(cell)] - most));
+    if (share < kLeast) continue;
+    const int x0 = left + cell % kMapSide * kCellPx, y0 = cell / kMapSide * kCellPx;
+    for (int y = 0; y < kCellPx; ++y)
+      for (int x = 0; x < kCellPx; ++x) picture.blend(x0 + x, y0 + y, colour, strength * share);
+  }
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> pose_picture(const fsw::imaging::ImageView& image, const telemetry_pose& pose,
+                                       double dark_level_dn, double noise_dn, fsw::pose::KeypointNetwork& network) {
+  const fsw::imaging::ImageFrame& frame = image.frame;
+  const int left = crop_left(frame.width);
+  ColourPicture picture(left + kCropPicturePx, std::max<int>(frame.height, kCropPicturePx));
+  constexpr double kNoiseSigmas = 4.0;
+  draw_image(image, dark_level_dn + kNoiseSigmas * noise_dn, picture);
+  const CropRegion region{Vector2(pose.region_px[0], pose.region_px[1]), pose.region_px[2]};
+  const auto samples = std::make_unique<fsw::pose::CropSamples>();
+  if (fsw::pose::cut_crop(image, region, dark_level_dn, *samples, false) != Status::kOk) return picture.png();
+  draw_crop(*samples, left, picture);
+  if (fsw::pose::cut_crop(image, region, dark_level_dn, *samples) == Status::kOk &&
+      network.run(*samples) == Status::kOk)
+    for (int k = 0; k < kKeypoints; ++k) {
+      constexpr double kStrong = 0.65, kFaint = 0.15;
+      draw_map(network.logits(k), colour_of(k), pose.keypoint_fate[k] != 0 ? kStrong : kFaint, left, picture);
+    }
+  return picture.png();
+}
+
 namespace {
 
 std::string caption(const PoseRow& row) {
@@ -29,7 +127,7 @@ PoseGallery::PoseGallery(const mission::Mission& mission, const mission::Spacecr
   const auto* const camera = navigation_camera(servicer, unit);
   if (camera == nullptr || !camera->has_use(CameraSensor::kKeypoints)) return;
   work_ = std::make_unique<Work>();
-  static_cast<void>(work_->network.load(fsw::network::weights_on_board()));  // without it, pictures without maps
+  static_cast<void>(work_->network.load(fsw::pose::weights_on_board()));  // without it, pictures without maps
   work_->assembly = fsw::imaging::ImageAssembly(unit);
   const camera_configuration configuration = camera_configuration_of(*camera);
   dark_level_dn_ = configuration.dark_level_dn;

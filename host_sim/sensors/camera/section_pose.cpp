@@ -8,15 +8,14 @@
 #include <fmt/format.h>
 
 #include "fsw/math/math.h"
-#include "host_sim/report/code_names.h"
-#include "host_sim/report/consistency.h"
-#include "host_sim/report/gallery_html.h"
-#include "host_sim/report/html_page.h"
-#include "host_sim/report/maneuver_series.h"
-#include "host_sim/report/number_text.h"
-#include "host_sim/report/paper_experiment2.h"
-#include "host_sim/report/section_parts.h"
+#include "host_sim/report/plots/html_page.h"
+#include "host_sim/report/plots/number_text.h"
+#include "host_sim/report/published_figures.h"
+#include "host_sim/report/run_series.h"
+#include "host_sim/report/sections/gallery_html.h"
+#include "host_sim/report/sections/sections.h"
 #include "host_sim/report/statistics.h"
+#include "host_sim/report/words.h"
 #include "host_sim/sensors/camera/camera_report.h"
 
 namespace vbar::sensors {

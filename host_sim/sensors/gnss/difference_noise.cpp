@@ -10,10 +10,10 @@ namespace vbar::sensors {
 namespace {
 
 using fsw::Vector3;
+using fsw::gnss::DifferentialEpoch;
+using fsw::gnss::DifferentialObservation;
 using fsw::gnss::kSignals;
 using fsw::gnss::Signal;
-using fsw::navigation::DifferentialEpoch;
-using fsw::navigation::DifferentialObservation;
 
 /// Fewer pairs say nothing of a correlation.
 constexpr std::size_t kFewestPairs = 50;

@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "fsw/navigation/differential.h"
-#include "host_sim/sensors/gnss/signal_noise_row.h"
+#include "fsw/gnss/differential.h"
+#include "host_sim/sensors/gnss/gnss_rows.h"
 
 namespace vbar::sensors {
 
@@ -39,7 +39,7 @@ struct ResidualEpoch {
 /// the reference), and a small error of the baseline, which are estimated by least squares; code takes the same
 /// baseline. `servicer_eci`: antenna, to some metres; `baseline_eci`: between the antennas at the receivers' own
 /// instants, to a centimetre or two. The result is empty if there are too few phases.
-[[nodiscard]] std::optional<ResidualEpoch> residuals_of(const fsw::navigation::DifferentialEpoch& differences,
+[[nodiscard]] std::optional<ResidualEpoch> residuals_of(const fsw::gnss::DifferentialEpoch& differences,
                                                         const fsw::Vector3& servicer_eci,
                                                         const fsw::Vector3& baseline_eci);
 

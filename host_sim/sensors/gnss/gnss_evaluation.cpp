@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fsw/gnc/message_fields.h"
 #include "fsw/gnss/constants.h"
-#include "fsw/navigation/single_point.h"
-#include "host_sim/sensors/gnss/gnss_row.h"
+#include "fsw/gnss/single_point.h"
+#include "fsw/messaging/message_fields.h"
+#include "host_sim/sensors/gnss/gnss_rows.h"
 
 namespace vbar::sensors {
 namespace {
@@ -91,8 +91,9 @@ void GnssEvaluation::take_bytes(std::size_t receiver, const Message& message) {
 
 template <class Message>
 void GnssEvaluation::take_attitude(std::size_t receiver, fsw::GpsTime time, const Message& message) {
-  if (!fsw::gnc::is_rotation(message.q_eci_body)) return;
-  attitudes_[receiver].put({time, fsw::gnc::rotation(message.q_eci_body), fsw::gnc::vector(message.rate_body)});
+  if (!fsw::messaging::is_rotation(message.q_eci_body)) return;
+  attitudes_[receiver].put(
+      {time, fsw::messaging::rotation(message.q_eci_body), fsw::messaging::vector(message.rate_body)});
 }
 
 /// An epoch waits for that of the other receiver until a later one has arrived.
@@ -108,20 +109,20 @@ void GnssEvaluation::match_epochs() {
 }
 
 void GnssEvaluation::add_pair(const fsw::gnss::ObservationEpoch& ours, const fsw::gnss::ObservationEpoch& theirs) {
-  using fsw::navigation::EarthFrame;
+  using fsw::gnss::EarthFrame;
   if (!earth_ || !receiver_ || !carrier_) return;
   const fsw::GpsTime tag = ours.receiver_time;
   const EarthFrame frame = EarthFrame::at(tag, orientation_of(*earth_));
-  const auto our_point = fsw::navigation::single_point(ours, ephemerides_, frame);
-  const auto their_point = fsw::navigation::single_point(theirs, ephemerides_, frame);
+  const auto our_point = fsw::gnss::single_point(ours, ephemerides_, frame);
+  const auto their_point = fsw::gnss::single_point(theirs, ephemerides_, frame);
   const auto our_attitude = attitudes_[kServicer].R_eci_body_at(tag);
   const auto their_attitude = attitudes_[kTarget].R_eci_body_at(tag);
   if (!our_point.ok() || !their_point.ok() || !our_attitude || !their_attitude) return;
   Pair& pair = pairs_.emplace_back();
-  fsw::navigation::form_differences(ours, theirs, ephemerides_, frame, pair.differences);
+  fsw::gnss::form_differences(ours, theirs, ephemerides_, frame, pair.differences);
   pair.servicer_eci = our_point.value().position_eci;
-  pair.lever_arms_eci = *their_attitude * fsw::gnc::vector(carrier_->target_antenna_body_m) -
-                        *our_attitude * fsw::gnc::vector(receiver_->antenna_body_m);
+  pair.lever_arms_eci = *their_attitude * fsw::messaging::vector(carrier_->target_antenna_body_m) -
+                        *our_attitude * fsw::messaging::vector(receiver_->antenna_body_m);
   // A clock that is ahead shows the tag before its time.
   pair.target_later_s = (our_point.value().clock_m - their_point.value().clock_m) / fsw::gnss::kSpeedOfLight;
 }

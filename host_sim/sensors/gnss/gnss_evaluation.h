@@ -5,14 +5,14 @@
 #include <memory>
 #include <optional>
 
+#include "fsw/gnss/differential.h"
+#include "fsw/gnss/ephemeris.h"
+#include "fsw/gnss/gnss_front_end.h"
 #include "fsw/gnss/receiver_decoder.h"
-#include "fsw/navigation/attitude_history.h"
-#include "fsw/navigation/differential.h"
-#include "fsw/navigation/ephemeris_store.h"
-#include "fsw/navigation/epoch_buffer.h"
+#include "fsw/measurements/pointing.h"
 #include "fsw/packets/messages.h"
-#include "host_sim/sensors/evaluation.h"
 #include "host_sim/sensors/gnss/difference_noise.h"
+#include "host_sim/sensors/sensor_kind.h"
 
 namespace vbar::sensors {
 
@@ -30,7 +30,7 @@ class GnssEvaluation final : public Evaluation {
 
   /// Both receivers' epoch of one tag, without the truth yet.
   struct Pair {
-    fsw::navigation::DifferentialEpoch differences;
+    fsw::gnss::DifferentialEpoch differences;
     fsw::Vector3 servicer_eci = fsw::Vector3::Zero();  ///< antenna
     fsw::Vector3 lever_arms_eci = fsw::Vector3::Zero();
     double target_later_s = 0.0;  ///< its instant of measurement against the servicer's
@@ -56,9 +56,9 @@ class GnssEvaluation final : public Evaluation {
   std::optional<vbar::receiver_configuration> receiver_;
   std::optional<vbar::carrier_configuration> carrier_;
   std::array<fsw::gnss::ReceiverDecoder, 2> decoders_{};
-  fsw::navigation::EphemerisStore ephemerides_;
-  std::array<fsw::navigation::EpochBuffer, 2> waiting_{};
-  std::array<fsw::navigation::AttitudeHistory, 2> attitudes_{};
+  fsw::gnss::EphemerisStore ephemerides_;
+  std::array<fsw::gnss::EpochBuffer, 2> waiting_{};
+  std::array<fsw::measurements::AttitudeHistory, 2> attitudes_{};
   std::deque<Pair> pairs_;
   DifferenceNoise noise_;
 };

@@ -5,22 +5,192 @@
 #include <stdexcept>
 
 #include "fsw/math/math.h"
+#include "host_sim/mission/data_file.h"
+#include "host_sim/mission/mission.h"
+#include "host_sim/mission/read_sections.h"
+#include "host_sim/mission/table_reader.h"
 #include "host_sim/sensors/gnss/gnss_evaluation.h"
-#include "host_sim/sensors/gnss/gnss_row.h"
-#include "host_sim/sensors/packets_of_testbed.h"
+#include "host_sim/sensors/gnss/gnss_rows.h"
+#include "host_sim/sensors/sensor_kind.h"
+#include "host_sim/sensors/settings/gnss_tables.h"
 #include "host_sim/twins/gnss/body_frame.h"
 #include "host_sim/twins/gnss/gnss_receiver.h"
-#include "host_sim/twins/gnss_sensor.h"
+#include "host_sim/twins/gnss/gnss_sensor.h"
 #include "host_sim/twins/recorded_log.h"
 
 namespace vbar::sensors {
+
+namespace {
+
+using mission::above_to;
+using mission::from_to;
+using mission::Names;
+using mission::Range;
+using mission::TableReader;
+
+using twins::gnss::GpsEphemerisLog;
+using twins::gnss::StartMode;
+
+constexpr Names<StartMode, 3> kStartModes{
+    {{"cold", StartMode::kCold}, {"warm", StartMode::kWarm}, {"hot", StartMode::kHot}}};
+constexpr Names<GpsEphemerisLog, 2> kEphemerisLogs{
+    {{"rawephem", GpsEphemerisLog::kRawEphem}, {"gpsephem", GpsEphemerisLog::kGpsEphem}}};
+
+constexpr Names<testbeds::Wiring, 2> kWirings{{{"host", testbeds::Wiring::kHost}, {"board", testbeds::Wiring::kBoard}}};
+
+void read_vector(const TableReader& section, std::string_view key, Range range, fsw::Vector3& value) {
+  const auto xyz = section.three_numbers(key, range, std::array<double, 3>{value.x(), value.y(), value.z()});
+  value = {xyz[0], xyz[1], xyz[2]};
+}
+
+void read_tracking(const TableReader& section, twins::gnss::TrackingSettings& settings) {
+  settings.thermal_noise = section.flag("thermal_noise", settings.thermal_noise);
+  read(section, "code_loop_bandwidth_hz", above_to(0.0, 100.0), settings.code_loop_bandwidth_hz);
+  read(section, "carrier_loop_bandwidth_hz", above_to(0.0, 200.0), settings.carrier_loop_bandwidth_hz);
+  read(section, "integration_s", above_to(0.0, 1.0), settings.integration_s);
+  read(section, "acquisition_threshold_dbhz", from_to(0.0, 60.0), settings.acquisition_threshold_dbhz);
+  read(section, "loss_threshold_dbhz", from_to(0.0, 60.0), settings.loss_threshold_dbhz);
+  read(section, "cycle_slips_per_hour", from_to(0.0, 1e4), settings.cycle_slips_per_hour);
+  read(section, "undetected_slip_fraction", from_to(0.0, 1.0), settings.undetected_slip_fraction);
+  read(section, "code_bias_sigma_m", from_to(0.0, 100.0), settings.code_bias_sigma_m);
+  read(section, "carrier_wander_sigma_mm", from_to(0.0, 100.0), settings.carrier_wander_sigma_mm);
+  read(section, "carrier_wander_time_s", above_to(0.0, 1e6), settings.carrier_wander_time_s);
+}
+
+void read_start(const TableReader& section, twins::gnss::StartSettings& settings) {
+  settings.mode = section.choice<StartMode>("mode", kStartModes, settings.mode);
+  constexpr Range kDelay_s = from_to(0.0, 3600.0);
+  read(section, "cold_search_min_s", kDelay_s, settings.cold_search_min_s);
+  read(section, "cold_search_max_s", kDelay_s, settings.cold_search_max_s);
+  read(section, "reacquisition_min_s", kDelay_s, settings.reacquisition_min_s);
+  read(section, "reacquisition_max_s", kDelay_s, settings.reacquisition_max_s);
+  read(section, "ephemeris_decoding_s", kDelay_s, settings.ephemeris_decoding_s);
+}
+
+void read_receiver_clock(const TableReader& section, twins::gnss::ClockSettings& settings) {
+  read(section, "initial_offset_ms", from_to(0.0, 1e3), settings.initial_offset_ms);
+  read(section, "initial_drift_sigma_ns_per_s", from_to(0.0, 1e5), settings.initial_drift_sigma_ns_per_s);
+  read(section, "h0_s", from_to(0.0, 1e-15), settings.h0_s);
+  read(section, "h_minus2_per_s", from_to(0.0, 1e-15), settings.h_minus2_per_s);
+  read(section, "jump_threshold_ms", from_to(0.5, 1e6), settings.jump_threshold_ms);
+}
+
+void read_body_frame(const TableReader& section, twins::gnss::BodyFrameSettings& settings) {
+  read_vector(section, "antenna_in_body_m", from_to(-50.0, 50.0), settings.antenna_in_body_m);
+  read_vector(section, "boresight_in_body", from_to(-1.0, 1.0), settings.boresight_in_body);
+  read(section, "com_radius_mm", from_to(0.0, 1e3), settings.com_radius_mm);
+  read(section, "pco_bias_mm", from_to(0.0, 1e3), settings.pco_bias_mm);
+  read(section, "pco_noise_mm", from_to(0.0, 1e3), settings.pco_noise_mm);
+  read(section, "antenna_direction_arcsec", from_to(0.0, 1e5), settings.antenna_direction_arcsec);
+  read(section, "attitude_knowledge_arcsec", from_to(0.0, 1e5), settings.attitude_knowledge_arcsec);
+}
+
+void read_line(const TableReader& section, double period_s, testbeds::ReceiverLine& line) {
+  line.port = section.text("port", line.port);
+  line.baud = static_cast<int>(section.integer("baud", 2400, 460800, line.baud));
+  line.wired = section.choice<testbeds::Wiring>("wired", kWirings, line.wired);
+  const double latest_s = std::max(0.0, period_s - 0.1);
+  line.log_offset_s = section.number("log_offset_s", from_to(0.0, latest_s), std::min(line.log_offset_s, latest_s));
+  line.clock_adjust = section.flag("clock_adjust", line.clock_adjust);
+  read(section, "max_latency_s", above_to(0.0, 60.0), line.max_latency_s);
+}
+
+}  // namespace
+
+std::shared_ptr<const mission::SensorSettings> read_gnss(const TableReader& section,
+                                                         const mission::SensorContext& context) {
+  auto sensor = std::make_shared<GnssSensor>();
+  const std::vector<std::string>& names = context.spacecraft_names;
+  mission::read_source(section, "digital", context, *sensor);
+  using Use = vbar::navigation_configuration;
+  sensor->observed = section.text("partner", "");
+  sensor->navigation = Use::kUseOwnGnss + (sensor->observed.empty() ? 0 : std::int32_t{Use::kUseCarrierPair});
+  const bool is_known = std::find(names.begin(), names.end(), sensor->observed) != names.end();
+  if (!sensor->observed.empty() && (!is_known || sensor->observed == context.spacecraft))
+    section.refuse_value("partner", "another spacecraft: " + mission::listing_of({names.begin(), names.end()}));
+  twins::gnss::GnssReceiverSettings& receiver = sensor->receiver;
+  read(section, "period_s", from_to(0.1, 60.0), receiver.output.period_s);
+  read(section, "ephemeris_period_s", from_to(1.0, 1e5), receiver.output.ephemeris_period_s);
+  read(section, "corrections_period_s", from_to(1.0, 1e5), receiver.output.corrections_period_s);
+  receiver.output.gps_ephemeris =
+      section.choice<GpsEphemerisLog>("gps_ephemeris", kEphemerisLogs, receiver.output.gps_ephemeris);
+  receiver.ionosphere = section.flag("ionosphere", receiver.ionosphere);
+  read_line(section, receiver.output.period_s, sensor->line);
+  read_visibility(section.table("visibility"), receiver.visibility);
+  read_link_budget(section.table("link_budget"), receiver.link_budget);
+  read_tracking(section.table("tracking"), receiver.tracking);
+  read_start(section.table("start"), receiver.start);
+  read_receiver_clock(section.table("clock"), receiver.clock);
+  read_body_frame(section.table("body_frame"), receiver.body_frame);
+  section.finish();
+  try {
+    twins::gnss::check(receiver);  // what depends on more than one key
+  } catch (const std::invalid_argument& error) {
+    section.refuse("", error.what(), "settings that fit together");
+  }
+  return sensor;
+}
+
+namespace {
+
+bool has_receiver_in_testbed(const mission::Mission& mission) {
+  for (const mission::Spacecraft& spacecraft : mission.spacecraft) {
+    const auto* const receiver = mission::find_settings<GnssSensor>(spacecraft);
+    if (receiver != nullptr && testbeds::find_testbed(receiver->source) != nullptr) return true;
+  }
+  return false;
+}
+
+void read_crosslink(const TableReader& section, const mission::Mission& mission, GnssShared& shared) {
+  constexpr double kHour_s = 3600.0;
+  shared.crosslink_from = section.span("from_h", kHour_s, from_to(0.0, mission::kLongestMission_h), 0.0);
+  if (shared.crosslink_from > fsw::Duration{} && has_receiver_in_testbed(mission))
+    section.refuse_value("from_h", "0: a receiver in a testbed is not switched on during the mission");
+  twins::gnss::CrosslinkSettings& crosslink = shared.crosslink;
+  if (section.has("latency")) crosslink.link.latency = mission::read_latency(section.table("latency"));
+  read(section, "loss_probability", from_to(0.0, 1.0), crosslink.link.loss_probability);
+  read(section, "silence_begin_s", from_to(0.0, 1e7), crosslink.silence_begin_s);
+  read(section, "silence_duration_s", from_to(0.0, 1e7), crosslink.silence_duration_s);
+  section.finish();
+}
+
+// Defaults: what the paper's Appendix A makes of each axis of an antenna (a vector of 5 mm of any direction, a ball of
+// 3 mm).
+void read_carrier_phase(const TableReader& section, vbar::carrier_configuration& carrier) {
+  carrier.resolve_ambiguities = section.flag("resolve_ambiguities", true) ? 1 : 0;
+  carrier.min_success_rate = section.number("success_rate_min", from_to(0.5, 1.0), 0.999);
+  carrier.min_ratio = section.number("ratio_min", from_to(1.0, 1e3), 3.0);
+  carrier.pair_wait_ns = section.span("pair_timeout_s", 1.0, from_to(0.1, 600.0), 12.0).ns;
+  carrier.antenna_offset_sigma_m = 1e-3 * section.number("antenna_offset_sigma_mm", above_to(0.0, 1e3), 3.2);
+  carrier.phase_centre_jitter_m = 1e-3 * section.number("phase_centre_jitter_mm", above_to(0.0, 100.0), 1.0);
+  carrier.phase_wander_sigma_m = 1e-3 * section.number("phase_wander_sigma_mm", from_to(0.0, 100.0), 0.0);
+  carrier.phase_wander_time_s = section.number("phase_wander_time_s", from_to(0.0, 1e6), 0.0);
+  if (carrier.phase_wander_sigma_m > 0.0 && carrier.phase_wander_time_s == 0.0)
+    section.refuse_value("phase_wander_time_s", "a number above 0 where phase_wander_sigma_mm is above 0");
+  carrier.code_bias_sigma_m = section.number("code_bias_sigma_m", above_to(0.0, 100.0), 2.0);
+  carrier.start_velocity_sigma = section.number("initial_velocity_sigma_mps", above_to(0.0, 100.0), 0.2);
+  section.finish();
+}
+
+}  // namespace
+
+std::shared_ptr<const mission::SharedSettings> read_gnss_shared(const TableReader& document,
+                                                                const mission::Mission& mission) {
+  auto shared = std::make_shared<GnssShared>();
+  read_carrier_phase(document.table("navigation").table("carrier_phase"), shared->carrier);
+  const TableReader constellation = document.table("constellation");
+  shared->constellation.navigation_files = mission::data_files(constellation, "navigation_files", mission);
+  read_constellation(constellation, shared->constellation);
+  read_crosslink(document.table("links").table("crosslink"), mission, *shared);
+  return shared;
+}
+
 namespace {
 
 using mission::find_settings;
 using mission::Mission;
 using mission::Sensor;
 using mission::Spacecraft;
-using mission::TableReader;
 
 /// The receivers of a pair are in one testbed or in none.
 void check_sources(const TableReader& section, const Sensor& sensor, const Spacecraft& partner) {

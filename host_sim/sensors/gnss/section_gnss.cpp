@@ -7,15 +7,14 @@
 
 #include <fmt/format.h>
 
-#include "host_sim/report/consistency.h"
-#include "host_sim/report/html_page.h"
-#include "host_sim/report/maneuver_series.h"
-#include "host_sim/report/navigation_errors.h"
-#include "host_sim/report/number_text.h"
-#include "host_sim/report/paper_experiment3.h"
-#include "host_sim/report/section_parts.h"
+#include "host_sim/report/plots/html_page.h"
+#include "host_sim/report/plots/number_text.h"
+#include "host_sim/report/published_figures.h"
+#include "host_sim/report/run_series.h"
+#include "host_sim/report/sections/sections.h"
+#include "host_sim/report/statistics.h"
 #include "host_sim/sensors/gnss/gnss_kind.h"
-#include "host_sim/sensors/gnss/gnss_row.h"
+#include "host_sim/sensors/gnss/gnss_rows.h"
 
 namespace vbar::sensors {
 namespace {

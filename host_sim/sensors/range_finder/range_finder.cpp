@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "host_sim/engine/distributions.h"
+#include "host_sim/engine/random_stream.h"
 
 namespace vbar::sensors {
 

@@ -7,7 +7,7 @@
 #include "fsw/math/math.h"
 #include "fsw/packets/messages.h"
 #include "host_sim/mission/read_attitude.h"
-#include "host_sim/sensors/packets_of_testbed.h"
+#include "host_sim/sensors/sensor_kind.h"
 #include "host_sim/twins/recorded_log.h"
 
 namespace vbar::sensors {

@@ -1,16 +1,36 @@
 #pragma once
-// All series of NRLMSISE-00 for one day and one level of solar activity, to be summed at a place and time of day.
+// The geomagnetic activity that a quantity of NRLMSISE-00 responds to: ap above its quiet value of 4, with the
+// saturation of the model, from the daily mean or from an exponentially weighted mean of the last 57 hours.
 
 #include <array>
 #include <memory>
 #include <utility>
 
-#include "host_sim/truth/atmosphere/effective_ap.h"
 #include "host_sim/truth/atmosphere/horizontal_expansion.h"
 #include "host_sim/truth/atmosphere/nrlmsise00_tables.h"
-#include "host_sim/truth/atmosphere/series_table.h"
+#include "host_sim/truth/earth/space_weather.h"
 
 namespace vbar::truth {
+
+class EffectiveAp {
+ public:
+  EffectiveAp() = default;
+
+  /// Evaluates the coupling to ap; `p` are the coefficients of the quantity.
+  EffectiveAp(const Nrlmsise00Tables::Upper& p, const SolarIndices& indices);
+
+  /// Returns the effective ap at a latitude: the decay depends on the distance of the latitude from 45 deg.
+  double at(double latitude_deg) const;
+
+ private:
+  bool remembers_ = false;
+  double daily_ = 0.0;
+  std::array<double, 6> history_{};  // saturated
+  double fading_ = 0.0;              // over three hours: exp(-fading_) at 45 deg
+  double latitude_slope_ = 0.0;
+};
+
+// All series of NRLMSISE-00 for one day and one level of solar activity, to be summed at a place and time of day.
 
 /// Relative variations (dimensionless, about 0) of the thermosphere's quantities: temperatures and gradient as factors
 /// 1 + v, densities at 120 km as factors exp(v).

@@ -1,17 +1,29 @@
 #pragma once
-// Composition and temperature of NRLMSISE-00 from 72.5 km up: each species in diffusive equilibrium above its
-// turbopause and mixed with the others below, with the corrections of chemistry and transport (Hedin 1987; Picone et
-// al. 2002).
+// The constituents of the air in NRLMSISE-00.
 
 #include <cstddef>
 
 #include "host_sim/truth/atmosphere/day_expansions.h"
-#include "host_sim/truth/atmosphere/latitude_gravity.h"
 #include "host_sim/truth/atmosphere/nrlmsise00_tables.h"
-#include "host_sim/truth/atmosphere/species.h"
-#include "host_sim/truth/atmosphere/thermosphere_temperature.h"
+#include "host_sim/truth/atmosphere/temperature_profile.h"
 
 namespace vbar::truth {
+
+/// Number densities, in the unit that the name of the variable states.
+struct SpeciesDensities {
+  double he = 0.0;
+  double o = 0.0;
+  double n2 = 0.0;
+  double o2 = 0.0;
+  double ar = 0.0;
+  double h = 0.0;
+  double n = 0.0;
+  double anomalous_o = 0.0;  ///< hot and ionised oxygen, relevant to drag at night above 500 km
+};
+
+// Composition and temperature of NRLMSISE-00 from 72.5 km up: each species in diffusive equilibrium above its
+// turbopause and mixed with the others below, with the corrections of chemistry and transport (Hedin 1987; Picone et
+// al. 2002).
 
 /// Quantities that the thermosphere of an instant and place depends on besides the altitude.
 struct ThermosphereConditions {

@@ -1,10 +1,26 @@
 #pragma once
-// The attitude of one spacecraft over time, whether it follows from torques (RigidBody) or from a pointing profile
-// (PointingProfile). The orbit is given and does not depend on the attitude.
+// Attitude and angular rate of a body at one instant.
 
-#include "host_sim/truth/attitude/attitude_state.h"
+#include <Eigen/Geometry>
+
+#include "fsw/core/types.h"
 
 namespace vbar::truth {
+
+struct AttitudeState {
+  /// Unit quaternion: q_body_eci * v_eci is v in body axes. ECI is GCRF.
+  Eigen::Quaterniond q_body_eci = Eigen::Quaterniond::Identity();
+  /// Angular rate of the body with respect to ECI, in body axes, rad/s.
+  fsw::Vector3 rate_body = fsw::Vector3::Zero();
+};
+
+/// Returns the angle of the rotation that takes one attitude to the other, rad, 0 to pi; precise for small angles too.
+inline double angle_between(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
+  return a.angularDistance(b);
+}
+
+// The attitude of one spacecraft over time, whether it follows from torques (RigidBody) or from a pointing profile
+// (PointingProfile). The orbit is given and does not depend on the attitude.
 
 /// Attitude over time. Times are seconds after the model's epoch. Not thread-safe: one thread per spacecraft.
 class AttitudeMotion {

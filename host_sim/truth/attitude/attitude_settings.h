@@ -5,10 +5,10 @@
 #include <variant>
 #include <vector>
 
-#include "host_sim/truth/attitude/attitude_state.h"
-#include "host_sim/truth/attitude/body.h"
+#include "host_sim/truth/attitude/attitude_motion.h"
 #include "host_sim/truth/attitude/commanded_attitude.h"
 #include "host_sim/truth/attitude/pointing_profile.h"
+#include "host_sim/truth/attitude/torques.h"
 
 namespace vbar::truth {
 

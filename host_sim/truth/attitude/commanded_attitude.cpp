@@ -8,7 +8,7 @@
 
 #include <Eigen/Geometry>
 
-#include "host_sim/truth/attitude/aiming.h"
+#include "host_sim/truth/attitude/pointing_profile.h"
 
 namespace vbar::truth {
 namespace {

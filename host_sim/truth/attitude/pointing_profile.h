@@ -1,14 +1,33 @@
 #pragma once
-// The attitude of a pointing spacecraft: a body axis, the boresight, follows a direction without error, and the
-// rotation about it keeps a second axis as close as possible to another direction. Errors of attitude control and
-// knowledge are modelled elsewhere.
+// Attitude from two directions: a primary one, which a body axis follows, and a secondary one, which fixes the rotation
+// about that axis; and the angular rate, from the rates of the directions: exact, without finite differences.
 
 #include <functional>
 
-#include "host_sim/truth/attitude/aiming.h"
+#include "fsw/core/types.h"
 #include "host_sim/truth/attitude/attitude_motion.h"
 
 namespace vbar::truth {
+
+/// A direction in ECI and its time derivative. Need not be a unit vector; any unit of length.
+struct MovingDirection {
+  fsw::Vector3 along = fsw::Vector3::Zero();
+  fsw::Vector3 rate = fsw::Vector3::Zero();
+};
+
+/// Aligns body axis `boresight_body` exactly with `primary` and, with the remaining freedom, `second_body` as closely
+/// as possible with `secondary` (both body axes of any length, not parallel). Within kMinAngle_rad of parallel or
+/// antiparallel the secondary does not fix the rotation about the boresight: throws std::domain_error, as it does for
+/// directions that are zero or not finite. Towards that limit the rate about the boresight grows as 1 / angle.
+AttitudeState aimed_attitude(const fsw::Vector3& boresight_body, const fsw::Vector3& second_body,
+                             const MovingDirection& primary, const MovingDirection& secondary);
+
+/// An arcsecond: the triad's third axis then still has ten correct digits.
+inline constexpr double kMinAngle_rad = 5e-6;
+
+// The attitude of a pointing spacecraft: a body axis, the boresight, follows a direction without error, and the
+// rotation about it keeps a second axis as close as possible to another direction. Errors of attitude control and
+// knowledge are modelled elsewhere.
 
 /// A spacecraft's motion at one instant, GCRF.
 struct OrbitalMotion {
@@ -39,7 +58,7 @@ struct PointingSettings {
   fsw::Vector3 second_body = fsw::Vector3::UnitY();
 };
 
-/// Returns whether two body axes (of any length) span a plane: neither zero nor parallel within kLeastAngle_rad.
+/// Returns whether two body axes (of any length) span a plane: neither zero nor parallel within kMinAngle_rad.
 [[nodiscard]] bool are_two_axes(const fsw::Vector3& a, const fsw::Vector3& b);
 
 /// Returns whether two directions are always the same or opposite.

@@ -9,7 +9,7 @@
 #include <Eigen/LU>
 #include <fmt/format.h>
 
-#include "host_sim/truth/event_location.h"
+#include "host_sim/truth/integration/event_location.h"
 
 namespace vbar::truth {
 namespace {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "host_sim/truth/attitude/attitude_motion.h"
-#include "host_sim/truth/attitude/torque.h"
-#include "host_sim/truth/dopri5.h"
+#include "host_sim/truth/attitude/torques.h"
+#include "host_sim/truth/integration/dopri5.h"
 
 namespace vbar::truth {
 

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "host_sim/truth/attitude/gravity_gradient_torque.h"
+#include "host_sim/truth/attitude/torques.h"
 
 namespace vbar::truth {
 namespace {

@@ -10,9 +10,8 @@
 #include <fmt/format.h>
 
 #include "host_sim/files/data_stream.h"
-#include "host_sim/truth/earth/orientation_formats/orientation_formats.h"
+#include "host_sim/truth/earth/orientation_formats.h"
 #include "host_sim/truth/earth/time_scales.h"
-#include "host_sim/truth/earth/utc_day.h"
 
 namespace vbar::truth {
 namespace {

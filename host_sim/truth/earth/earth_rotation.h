@@ -1,8 +1,6 @@
 #pragma once
-// GCRF to ITRF by the IAU 2006/2000A conventions (IERS Conventions 2010, chapter 5, CIO-based):
-//   R_itrf_gcrf = W(xp, yp, s') R3(ERA) C(X, Y, s).
-// The series for X, Y, s (several thousand terms) are computed by ERFA at nodes six hours apart and interpolated; the
-// Earth rotation angle is exact at every call. "Exact" is ERFA's own number.
+// Interpolation of a smooth quantity known at equally spaced nodes: the polynomial of degree five through the six nodes
+// around an interval.
 
 #include <cstdint>
 #include <map>
@@ -10,10 +8,28 @@
 
 #include "fsw/core/types.h"
 #include "host_sim/truth/earth/earth_orientation.h"
-#include "host_sim/truth/earth/node_polynomial.h"
 #include "host_sim/truth/earth/time_scales.h"
 
 namespace vbar::truth {
+
+inline constexpr int kNodePoints = 6;
+inline constexpr int kFirstNode = -2;  ///< the interval is [0, 1]; its nodes lie at -2, -1, 0, 1, 2, 3
+
+/// Computes the coefficients, lowest power first, of the polynomial in the fraction of the interval through the values
+/// at the nodes.
+void fit_node_polynomial(const double (&values)[kNodePoints], double (&coefficients)[kNodePoints]);
+
+/// Returns the value of such a polynomial at `t`.
+inline double node_polynomial(const double (&coefficients)[kNodePoints], double t) {
+  double sum = coefficients[kNodePoints - 1];
+  for (int power = kNodePoints - 2; power >= 0; --power) sum = sum * t + coefficients[power];
+  return sum;
+}
+
+// GCRF to ITRF by the IAU 2006/2000A conventions (IERS Conventions 2010, chapter 5, CIO-based):
+//   R_itrf_gcrf = W(xp, yp, s') R3(ERA) C(X, Y, s).
+// The series for X, Y, s (several thousand terms) are computed by ERFA at nodes six hours apart and interpolated; the
+// Earth rotation angle is exact at every call. "Exact" is ERFA's own number.
 
 /// Celestial intermediate pole (x, y) and CIO locator s, rad.
 struct CelestialPole {
@@ -66,5 +82,18 @@ class EarthRotation {
   fsw::GpsTime epoch_;
   CelestialPoleInterpolator pole_;
 };
+
+// Geodetic coordinates on the WGS 84 ellipsoid.
+
+struct GeodeticPosition {
+  double latitude = 0.0;   ///< rad, -pi/2 to pi/2
+  double longitude = 0.0;  ///< rad, -pi to pi; 0 on the axis
+  double altitude = 0.0;   ///< m, above the ellipsoid
+};
+
+/// Returns geodetic coordinates from a position in ITRF, m, more than 100 km from the Earth's centre. Bowring's formula
+/// (1976) applied twice: errors below 1e-14 rad and 1e-8 m from the ground to geostationary (held by its test). A
+/// position that is not finite gives NaNs.
+GeodeticPosition geodetic_from_itrf(const fsw::Vector3& position_itrf);
 
 }  // namespace vbar::truth

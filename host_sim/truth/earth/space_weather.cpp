@@ -11,8 +11,7 @@
 
 #include "host_sim/files/data_stream.h"
 #include "host_sim/truth/earth/time_scales.h"
-#include "host_sim/truth/earth/utc_day.h"
-#include "host_sim/truth/earth/weather_formats/weather_formats.h"
+#include "host_sim/truth/earth/weather_formats.h"
 
 namespace vbar::truth {
 namespace {

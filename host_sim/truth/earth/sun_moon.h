@@ -16,7 +16,7 @@
 #include <map>
 
 #include "fsw/core/types.h"
-#include "host_sim/truth/earth/node_polynomial.h"
+#include "host_sim/truth/earth/earth_rotation.h"
 #include "host_sim/truth/earth/time_scales.h"
 
 namespace vbar::truth {

@@ -8,8 +8,8 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "host_sim/truth/earth/geodetic.h"
-#include "host_sim/truth/earth/utc_day.h"
+#include "host_sim/truth/earth/earth_rotation.h"
+#include "host_sim/truth/earth/time_scales.h"
 
 namespace vbar::truth {
 namespace {

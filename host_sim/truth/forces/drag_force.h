@@ -21,7 +21,6 @@
 #include "host_sim/truth/earth/space_weather.h"
 #include "host_sim/truth/forces/force.h"
 #include "host_sim/truth/forces/force_model.h"
-#include "host_sim/truth/forces/surface_properties.h"
 
 namespace vbar::truth {
 

@@ -1,17 +1,98 @@
 #include "host_sim/truth/forces/solid_tides.h"
 
+#include <array>
 #include <cmath>
 #include <complex>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <erfa.h>
 #include <erfam.h>
 
+#include "host_sim/truth/forces/gravitation.h"
 #include "host_sim/truth/forces/solid_tide_tables.h"
 
 namespace vbar::truth {
+
+namespace {
+
+constexpr int kTop = LowDegreeCoefficients::kDegree + 1;  // the gradient reaches one degree higher
+
+/// Unnormalised solid harmonics V_nm + i W_nm = (R/r)^(n+1) P_nm(sin latitude) e^(i m longitude).
+struct SolidHarmonics {
+  double v[kTop + 1][kTop + 1] = {};
+  double w[kTop + 1][kTop + 1] = {};
+};
+
+/// Recursions of Cunningham 1970; Montenbruck and Gill 2000, eq. 3.29 to 3.31.
+SolidHarmonics solid_harmonics(double radius, const fsw::Vector3& position) {
+  const double r2 = position.squaredNorm();
+  const double q = radius * radius / r2;
+  const fsw::Vector3 p = radius / r2 * position;
+  SolidHarmonics h;
+  h.v[0][0] = std::sqrt(q);
+  for (int m = 0; m <= kTop; ++m) {
+    if (m > 0) {
+      h.v[m][m] = (2 * m - 1) * (p.x() * h.v[m - 1][m - 1] - p.y() * h.w[m - 1][m - 1]);
+      h.w[m][m] = (2 * m - 1) * (p.x() * h.w[m - 1][m - 1] + p.y() * h.v[m - 1][m - 1]);
+    }
+    for (int n = m + 1; n <= kTop; ++n) {
+      const double before_last_v = n > m + 1 ? h.v[n - 2][m] : 0.0;
+      const double before_last_w = n > m + 1 ? h.w[n - 2][m] : 0.0;
+      h.v[n][m] = ((2 * n - 1) * p.z() * h.v[n - 1][m] - (n + m - 1) * q * before_last_v) / (n - m);
+      h.w[n][m] = ((2 * n - 1) * p.z() * h.w[n - 1][m] - (n + m - 1) * q * before_last_w) / (n - m);
+    }
+  }
+  return h;
+}
+
+/// sqrt((2 - delta_0m) (2n + 1) (n - m)! / (n + m)!): normalised over unnormalised Legendre function.
+using Normalisation =
+    std::array<std::array<double, LowDegreeCoefficients::kDegree + 1>, LowDegreeCoefficients::kDegree + 1>;
+
+Normalisation make_normalisation() {
+  Normalisation factor{};
+  for (int n = 0; n <= LowDegreeCoefficients::kDegree; ++n) {
+    double square = 2.0 * n + 1.0;
+    for (int m = 0; m <= n; ++m) {
+      if (m == 1) square *= 2.0;
+      if (m > 0) square /= static_cast<double>(n + m) * (n - m + 1);
+      factor[static_cast<std::size_t>(n)][static_cast<std::size_t>(m)] = std::sqrt(square);
+    }
+  }
+  return factor;
+}
+
+}  // namespace
+
+fsw::Vector3 acceleration_itrf(const LowDegreeCoefficients& coefficients, double gm, double radius,
+                               const fsw::Vector3& position_itrf) {
+  static const Normalisation normalisation = make_normalisation();
+  const SolidHarmonics h = solid_harmonics(radius, position_itrf);
+  fsw::Vector3 sum = fsw::Vector3::Zero();
+  for (int n = 2; n <= LowDegreeCoefficients::kDegree; ++n) {
+    for (int m = 0; m <= n; ++m) {
+      const double factor = normalisation[static_cast<std::size_t>(n)][static_cast<std::size_t>(m)];
+      const double c = factor * coefficients.c[n][m], s = factor * coefficients.s[n][m];
+      // Montenbruck and Gill 2000, eq. 3.33.
+      if (m == 0) {
+        sum.x() -= c * h.v[n + 1][1];
+        sum.y() -= c * h.w[n + 1][1];
+      } else {
+        const double down = (n - m + 1.0) * (n - m + 2.0);
+        sum.x() += 0.5 * (-c * h.v[n + 1][m + 1] - s * h.w[n + 1][m + 1] +
+                          down * (c * h.v[n + 1][m - 1] + s * h.w[n + 1][m - 1]));
+        sum.y() += 0.5 * (-c * h.w[n + 1][m + 1] + s * h.v[n + 1][m + 1] +
+                          down * (-c * h.w[n + 1][m - 1] + s * h.v[n + 1][m - 1]));
+      }
+      sum.z() += (n - m + 1) * (-c * h.v[n + 1][m] - s * h.w[n + 1][m]);
+    }
+  }
+  return gm / (radius * radius) * sum;
+}
+
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -137,6 +218,30 @@ void add_pole_tides(double pole_x, double pole_y, JulianDate tt, LowDegreeCoeffi
   // Solid Earth, section 6.4; oceans, eq. 6.24.
   change.c[2][1] += -1.333e-9 * (m1 + 0.0115 * m2) - 2.1778e-10 * (m1 - 0.01724 * m2);
   change.s[2][1] += -1.333e-9 * (m2 - 0.0115 * m1) - 1.7232e-10 * (m2 - 0.03365 * m1);
+}
+
+SolidTidesForce::SolidTidesForce(double gm, double radius, TideSystem tide_system, fsw::GpsTime epoch,
+                                 std::shared_ptr<const EarthOrientationSeries> orientation)
+    : gm_(gm), radius_(radius), tide_system_(tide_system), epoch_(epoch), orientation_(std::move(orientation)) {
+  if (!orientation_) throw std::invalid_argument("the solid tides need Earth orientation data");
+}
+
+LowDegreeCoefficients SolidTidesForce::coefficients(const ForceInput& input) {
+  const EarthOrientation orientation = orientation_->at(epoch_, input.seconds);
+  const JulianDate tt = tt_of(epoch_, input.seconds);
+  const JulianDate ut1 = ut1_of(tai_of(epoch_, input.seconds), orientation.ut1_minus_tai_s);
+
+  LowDegreeCoefficients change;
+  add_love_number_response({kMoonGm / gm_, input.R_itrf_gcrf * input.moon_eci}, radius_, change);
+  add_love_number_response({kSunGm / gm_, input.R_itrf_gcrf * input.sun_eci}, radius_, change);
+  frequency_dependent_.add(tt, eraGmst06(ut1.day, ut1.fraction, tt.day, tt.fraction), change);
+  add_pole_tides(orientation.pole_x, orientation.pole_y, tt, change);
+  if (tide_system_ == TideSystem::kZeroTide) change.c[2][0] -= permanent_tide_c20();
+  return change;
+}
+
+fsw::Vector3 SolidTidesForce::acceleration_eci(const ForceInput& input) {
+  return input.R_itrf_gcrf.transpose() * acceleration_itrf(coefficients(input), gm_, radius_, input.position_itrf);
 }
 
 }  // namespace vbar::truth

@@ -1,4 +1,31 @@
 #pragma once
+// A gravity field of degrees 2 to 4 whose coefficients change from call to call, as those of the tides do: small enough
+// to be summed term by term, where GravityField prepares its series once.
+
+#include <memory>
+#include <string_view>
+
+#include "fsw/core/gps_time.h"
+#include "fsw/core/types.h"
+#include "host_sim/truth/earth/earth_orientation.h"
+#include "host_sim/truth/earth/time_scales.h"
+#include "host_sim/truth/forces/force.h"
+
+namespace vbar::truth {
+
+/// Fully normalised coefficients, as in gravity_coefficients.h: c[n][m], s[n][m], 0 <= m <= n <= 4. Degrees 0 and 1 are
+/// not used.
+struct LowDegreeCoefficients {
+  static constexpr int kDegree = 4;
+  double c[kDegree + 1][kDegree + 1] = {};
+  double s[kDegree + 1][kDegree + 1] = {};
+};
+
+/// Returns the acceleration, m/s^2 in ITRF, at a position (m, in ITRF, not the centre) in the field of `coefficients`
+/// with gravitational parameter `gm` (m^3/s^2) and reference radius `radius` (m).
+fsw::Vector3 acceleration_itrf(const LowDegreeCoefficients& coefficients, double gm, double radius,
+                               const fsw::Vector3& position_itrf);
+
 // The elastic response of the Earth to the Moon, the Sun and polar motion, as changes of the low degrees of its gravity
 // field (IERS Conventions 2010, IERS Technical Note 36, chapter 6):
 //   step 1   the same Love numbers for every frequency (section 6.2.1, eq. 6.6 and 6.7);
@@ -7,14 +34,6 @@
 //            (sections 6.4 and 6.5, of the oceans degree 2 alone, nine tenths of it).
 // Corrections to normalised coefficients. Not here: the ocean tides (section 6.3), which need a model of some hundred
 // coefficients; their acceleration of a low satellite is about a tenth of the solid Earth's, some 3e-8 m/s^2.
-
-#include <string_view>
-
-#include "fsw/core/types.h"
-#include "host_sim/truth/earth/time_scales.h"
-#include "host_sim/truth/forces/low_degree_field.h"
-
-namespace vbar::truth {
 
 /// Part of the permanent tide, the mean of the tide over time, that C20 of a gravity model contains: its deformation
 /// (zero tide) or nothing (tide free).
@@ -62,5 +81,33 @@ class FrequencyDependentTides {
 /// Adds the pole tides of a pole at (pole_x, pole_y), rad as in Earth orientation data, relative to the secular pole of
 /// the Conventions (update of 2018 of section 7.1.4, the mean motion since 2000).
 void add_pole_tides(double pole_x, double pole_y, JulianDate tt, LowDegreeCoefficients& change);
+
+// The gravity of the tides of the solid Earth, and of the pole tides, as a force.
+
+/// Force of the tides: one object per spacecraft, as it caches the sums of step 2.
+class SolidTidesForce final : public Force {
+ public:
+  /// Makes the force from `gm` (m^3/s^2), `radius` (m) and `tide_system` of the gravity model that it goes with;
+  /// `orientation` of the days to come must not be null.
+  SolidTidesForce(double gm, double radius, TideSystem tide_system, fsw::GpsTime epoch,
+                  std::shared_ptr<const EarthOrientationSeries> orientation);
+
+  std::string_view name() const override { return "solid_tides"; }
+  bool needs_sun_and_moon() const override { return true; }
+
+  /// Throws std::out_of_range outside the Earth orientation data.
+  fsw::Vector3 acceleration_eci(const ForceInput& input) override;
+
+  /// Returns the change of the gravity model's coefficients that makes the acceleration.
+  LowDegreeCoefficients coefficients(const ForceInput& input);
+
+ private:
+  double gm_;
+  double radius_;
+  TideSystem tide_system_;
+  fsw::GpsTime epoch_;
+  std::shared_ptr<const EarthOrientationSeries> orientation_;
+  FrequencyDependentTides frequency_dependent_;
+};
 
 }  // namespace vbar::truth

@@ -1,6 +1,6 @@
-#include "host_sim/twins/camera/blooming.h"
-
 #include <cstddef>
+
+#include "host_sim/twins/camera/detector.h"
 
 namespace vbar::twins::camera {
 namespace {

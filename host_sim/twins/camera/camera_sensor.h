@@ -1,22 +1,62 @@
 #pragma once
-// A camera as a packet source: an image every period, taken on a thread of its own while the simulation goes on,
-// because it leaves the camera only when it has been read out. An ImageTaker produces it (image_maker.h).
+// A thread for work that must stay on one thread (an OpenGL context), in the order of the requests.
 
 #include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <future>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
+#include <thread>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "fsw/core/gps_time.h"
-#include "host_sim/engine/cadence.h"
-#include "host_sim/twins/camera/exposure_of_truth.h"
+#include "host_sim/engine/clock.h"
+#include "host_sim/twins/camera/exposure.h"
 #include "host_sim/twins/camera/image_maker.h"
-#include "host_sim/twins/camera/image_taker.h"
-#include "host_sim/twins/camera/worker.h"
 #include "host_sim/twins/packet_source.h"
 
 namespace vbar::twins::camera {
+
+class Worker {
+ public:
+  Worker();
+  ~Worker();
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+  /// Returns when the job at hand is finished; the futures of jobs not started are broken (std::future_error), as are
+  /// those of jobs to come.
+  void stop();
+
+  /// Runs `job` on the worker's thread, after all jobs before it; its exceptions come out of the future.
+  template <class Job>
+  std::future<std::invoke_result_t<Job>> run(Job job) {
+    // A std::function must be copyable, which a task is not.
+    auto task = std::make_shared<std::packaged_task<std::invoke_result_t<Job>()>>(std::move(job));
+    auto result = task->get_future();
+    enqueue([task = std::move(task)] { (*task)(); });
+    return result;
+  }
+
+ private:
+  void enqueue(std::function<void()> job);
+  void work();
+
+  std::mutex mutex_;
+  std::condition_variable something_to_do_;
+  std::deque<std::function<void()>> jobs_;
+  bool stop_ = false;
+  std::thread thread_;  // last: it uses all the others
+};
+
+// A camera as a packet source: an image every period, taken on a thread of its own while the simulation goes on,
+// because it leaves the camera only when it has been read out. An ImageTaker produces it (image_maker.h).
 
 class CameraSensor final : public PacketSource {
  public:

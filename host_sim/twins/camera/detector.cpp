@@ -4,9 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "host_sim/engine/distributions.h"
 #include "host_sim/engine/random_stream.h"
-#include "host_sim/twins/camera/blooming.h"
 #include "host_sim/twins/camera/pixel_noise.h"
 
 namespace vbar::twins::camera {

@@ -1,13 +1,5 @@
 #pragma once
-// The detector: from expected photo-electrons to the numbers that are read.
-//
-//   charge = Poisson(response * photo-electrons + dark electrons)      shot noise of light and dark current together
-//   charge beyond the full well spills to the neighbours or is drained (bloom())
-//   DN     = round(offset + gain * (charge + read noise)), cut off at 0 and 2^bits - 1
-//
-// Response and dark current are of the pixel (fixed pattern, hot pixels); their values are drawn from the seed and are
-// the same for the whole run. The noise of an exposure is a pure function of (seed, camera, exposure number, pixel).
-// The model is that of the EMVA standard 1288, with blooming added.
+// Charge beyond the full well of a pixel.
 
 #include <cstdint>
 #include <optional>
@@ -19,6 +11,31 @@
 #include "host_sim/twins/camera/photon_image.h"
 
 namespace vbar::twins::camera {
+
+struct BloomingSettings {
+  double full_well_electrons = 0.0;
+  double spilled_fraction =
+      0.0;  ///< share of the charge beyond the full well that spills to the four neighbours; the rest is drained
+};
+
+/// Spills and drains what exceeds the full well in `charge` (rows of `width`, electrons), in rounds, each of all pixels
+/// at once, so that no direction is preferred: a quarter of what spills goes to each neighbour, over the image's edge
+/// it is lost. Afterwards no pixel holds more than the full well. The rounds end when no pixel exceeds it;
+/// after kBloomingRounds the excess is drained. Returns the electrons drained or lost: these and those kept add up to
+/// the input.
+double bloom(const BloomingSettings& settings, int width, int height, std::vector<float>& charge);
+
+inline constexpr int kBloomingRounds = 200;
+
+// The detector: from expected photo-electrons to the numbers that are read.
+//
+//   charge = Poisson(response * photo-electrons + dark electrons)      shot noise of light and dark current together
+//   charge beyond the full well spills to the neighbours or is drained (bloom())
+//   DN     = round(offset + gain * (charge + read noise)), cut off at 0 and 2^bits - 1
+//
+// Response and dark current are of the pixel (fixed pattern, hot pixels); their values are drawn from the seed and are
+// the same for the whole run. The noise of an exposure is a pure function of (seed, camera, exposure number, pixel).
+// The model is that of the EMVA standard 1288, with blooming added.
 
 /// A pixel whose dark current is far above the others'.
 struct HotPixel {

@@ -5,9 +5,10 @@
 
 #include <Eigen/Geometry>
 
-#include "host_sim/truth/forces/shadow.h"
+#include "host_sim/truth/forces/radiation_pressure.h"
 
 namespace vbar::twins::camera {
+
 namespace {
 
 using fsw::Vector3;
@@ -81,6 +82,15 @@ Vector3 EarthDisc::light_eci(double sun_photons_per_m2_s) const {
     }
   }
   return radiance(sun_photons_per_m2_s) * solid_angle * light;
+}
+
+double earth_light_factor(double cosine, double sine_earth) {
+  if (cosine >= sine_earth) return cosine;
+  if (cosine <= -sine_earth) return 0.0;
+  const double sin2 = sine_earth * sine_earth, sine = std::sqrt(1.0 - cosine * cosine);
+  const double x = std::sqrt(std::max(0.0, 1.0 / sin2 - 1.0)), y = std::clamp(-x * cosine / sine, -1.0, 1.0);
+  const double s = sine * std::sqrt(1.0 - y * y);
+  return std::max(0.0, ((cosine * std::acos(y) - x * s) * sin2 + std::atan2(s, x)) / (M_PI * sin2));
 }
 
 }  // namespace vbar::twins::camera

@@ -4,8 +4,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "fsw/imaging/image.h"
-#include "fsw/imaging/tile_packing.h"
+#include "fsw/vision/imaging/image.h"
+#include "fsw/vision/imaging/image_assembly.h"
 #include "host_sim/twins/packet_encoder.h"
 
 namespace vbar::twins::camera {

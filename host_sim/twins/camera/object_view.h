@@ -1,15 +1,21 @@
 #pragma once
-// The interface between scene and renderers of spacecraft.
+// The light of an extended object as a camera receives it: many points, each with direction and flux.
 
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "fsw/core/types.h"
-#include "host_sim/twins/camera/light_sample.h"
-#include "host_sim/twins/camera/projection.h"
+#include "host_sim/twins/camera/optics.h"
 
 namespace vbar::twins::camera {
+
+struct LightSample {
+  fsw::Vector3 direction_camera = fsw::Vector3::UnitZ();  ///< towards it, unit
+  double photons_per_m2_s = 0.0;  ///< at the lens, as CameraSettings::zero_magnitude_photons counts them
+};
+
+// The interface between scene and renderers of spacecraft.
 
 /// A spacecraft in view of the camera and its illumination; camera axes.
 struct ObjectView {
@@ -31,5 +37,12 @@ using ObjectRenderer = std::function<void(const ObjectView& view, std::vector<Li
 /// background. One call at a time.
 using ObjectCover = std::function<void(const ObjectView& view, const Projection& optics, const Region& region,
                                        std::vector<float>& covered)>;
+
+// The simplest spacecraft model: a Lambert sphere. Its light is known in closed form.
+
+/// Renders every model as a Lambert sphere of `radius_m` and `albedo` in the Sun's light alone, by `points_across`
+/// points over its disc. At a distance its flux is that of the sunlight times (2/3) albedo (radius/distance)^2 (sin a +
+/// (pi - a) cos a)/pi at the phase angle a (Russell 1916).
+ObjectRenderer lambert_sphere(double radius_m, double albedo, int points_across = 96);
 
 }  // namespace vbar::twins::camera

@@ -8,8 +8,22 @@
 
 namespace vbar::twins::camera {
 
-using fsw::Matrix2;
 using fsw::Vector2;
+
+Cone Projection::cone_of(const Region& region, double margin_px) const {
+  const double left = region.x - 0.5 - margin_px, right = region.x + region.width - 0.5 + margin_px;
+  const double top = region.y - 0.5 - margin_px, bottom = region.y + region.height - 0.5 + margin_px;
+  Cone cone;
+  cone.axis = direction_of({0.5 * (left + right), 0.5 * (top + bottom)});
+  for (const Vector2& corner :
+       {Vector2(left, top), Vector2(right, top), Vector2(left, bottom), Vector2(right, bottom)}) {
+    const double cosine = std::min(1.0, cone.axis.dot(direction_of(corner)));
+    cone.half_angle = std::max(cone.half_angle, std::acos(cosine));
+  }
+  return cone;
+}
+
+using fsw::Matrix2;
 using fsw::Vector3;
 
 Optics::Optics(const CameraSettings& settings)
@@ -67,6 +81,16 @@ Vector3 Optics::direction_of(const Vector2& pixel) const {
 double Optics::vignetting(const Vector2& pixel) const {
   const double ratio2 = (pixel - principal_point_px_).squaredNorm() / (corner_px_ * corner_px_);
   return std::max(0.0, 1.0 - settings_.vignetting * ratio2 * ratio2);
+}
+
+void PixelDirections::prepare(const Region& region) {
+  if (!directions_.empty() && region == region_) return;
+  region_ = region;
+  directions_.clear();
+  directions_.reserve(static_cast<std::size_t>(region.width) * static_cast<std::size_t>(region.height));
+  for (int y = region.y; y < region.y + region.height; ++y)
+    for (int x = region.x; x < region.x + region.width; ++x)
+      directions_.push_back(projection_->direction_of(fsw::Vector2(x, y)));
 }
 
 }  // namespace vbar::twins::camera

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "fsw/core/types.h"
 #include "host_sim/twins/camera/camera_settings.h"
 
 namespace vbar::twins::camera {
@@ -16,6 +17,14 @@ struct PhotonImage {
     return electrons[static_cast<std::size_t>(y - region.y) * static_cast<std::size_t>(region.width) +
                      static_cast<std::size_t>(x - region.x)];
   }
+};
+
+// A point of light on the detector.
+
+/// A point of an image.
+struct ImagePoint {
+  fsw::Vector2 pixel = fsw::Vector2::Zero();  ///< at the middle of the exposure
+  double electrons = 0.0;                     ///< in total
 };
 
 }  // namespace vbar::twins::camera

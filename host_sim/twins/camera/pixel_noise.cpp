@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "host_sim/engine/distributions.h"
+#include "host_sim/engine/random_stream.h"
 #include "host_sim/engine/wide_loops.h"
 
 namespace vbar::twins::camera {

@@ -27,7 +27,7 @@ PointSpread::PointSpread(const OpticsSettings& optics)
 double PointSpread::reach_px(const Component& component, double electrons) {
   const double peak = electrons * component.fraction / (2.0 * M_PI * component.sigma_px * component.sigma_px);
   const double sigmas = peak > kLost ? std::sqrt(2.0 * std::log(peak / kLost)) : 0.0;
-  return component.sigma_px * std::max(sigmas, component.least_reach);
+  return component.sigma_px * std::max(sigmas, component.min_reach);
 }
 
 double PointSpread::reach_px(double electrons) const {

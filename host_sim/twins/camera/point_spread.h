@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "fsw/core/types.h"
-#include "host_sim/twins/camera/image_point.h"
+#include "host_sim/twins/camera/extended_psf.h"
 #include "host_sim/twins/camera/photon_image.h"
-#include "host_sim/twins/camera/wide_spread.h"
 
 namespace vbar::twins::camera {
 
@@ -35,7 +34,7 @@ class PointSpread {
  private:
   struct Component {
     double fraction, sigma_px;
-    double least_reach;  // sigmas
+    double min_reach;  // sigmas
   };
   struct SmearNode {
     fsw::Vector2 offset;
@@ -55,7 +54,7 @@ class PointSpread {
                      PhotonImage& image);
 
   std::array<Component, 2> components_;
-  WideSpread wide_;
+  ExtendedPsf wide_;
   std::vector<SmearNode> nodes_;  // work space, as all below
   Profile across_, down_;
   std::vector<float> grid_, row_sums_;

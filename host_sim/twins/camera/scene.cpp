@@ -4,12 +4,12 @@
 #include <cmath>
 #include <utility>
 
-#include "host_sim/truth/forces/shadow.h"
-#include "host_sim/twins/camera/aberration.h"
-#include "host_sim/twins/camera/discs.h"
-#include "host_sim/twins/camera/lambert_sphere.h"
+#include "host_sim/truth/forces/radiation_pressure.h"
+#include "host_sim/twins/camera/object_view.h"
 #include "host_sim/twins/camera/optics.h"
 #include "host_sim/twins/camera/photometry.h"
+#include "host_sim/twins/camera/star_sky.h"
+#include "host_sim/twins/camera/sun_moon_discs.h"
 
 namespace vbar::twins::camera {
 namespace {

@@ -8,10 +8,9 @@
 #include "host_sim/twins/camera/earth_disc.h"
 #include "host_sim/twins/camera/exposure.h"
 #include "host_sim/twins/camera/object_view.h"
+#include "host_sim/twins/camera/optics.h"
 #include "host_sim/twins/camera/photon_image.h"
-#include "host_sim/twins/camera/pixel_directions.h"
 #include "host_sim/twins/camera/point_spread.h"
-#include "host_sim/twins/camera/projection.h"
 #include "host_sim/twins/camera/star_sky.h"
 
 namespace vbar::twins::camera {

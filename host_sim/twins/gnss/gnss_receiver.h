@@ -26,8 +26,6 @@
 #include "host_sim/twins/gnss/oem_encoder.h"
 #include "host_sim/twins/gnss/point_solution.h"
 #include "host_sim/twins/gnss/receiver_bytes.h"
-#include "host_sim/twins/gnss/receiver_clock.h"
-#include "host_sim/twins/gnss/signal_noise.h"
 #include "host_sim/twins/gnss/signal_path.h"
 #include "host_sim/twins/gnss/tracking.h"
 

@@ -6,9 +6,9 @@
 #include <array>
 #include <cstdint>
 
-#include "host_sim/twins/gnss/broadcast_orbit.h"
 #include "host_sim/twins/gnss/constellation.h"
-#include "host_sim/twins/gnss/leap_seconds.h"
+#include "host_sim/twins/gnss/satellite.h"
+#include "host_sim/twins/gnss/system_time.h"
 
 namespace vbar::twins::gnss {
 
@@ -33,5 +33,17 @@ Subframe lnav_page_18(const BroadcastCorrections& corrections, const UtcOffset& 
 /// Returns a page of subframe 4 or 5 without content: the almanac of dummy satellite 0, alternating ones and zeros
 /// (IS-GPS-200N 20.3.3.5.1.2).
 Subframe lnav_dummy_page(unsigned subframe, fsw::GpsTime transmission);
+
+// The words of the GPS LNAV message as they are transmitted: parity of IS-GPS-200N 20.3.5.2, table 20-XIV.
+
+/// Ten words of 30 bits, the first transmitted in bit 29.
+using TransmittedSubframe = std::array<std::uint32_t, 10>;
+
+/// Returns the word of 30 bits after `previous` (of which D29 and D30 are used) that carries the 24 bits of `data`.
+std::uint32_t lnav_word(std::uint32_t data, std::uint32_t previous);
+
+/// Returns the subframe with parity. The last two data bits of words 2 and 10 are solved so that D29 and D30 are zero,
+/// so that subframes do not depend on each other.
+TransmittedSubframe lnav_transmitted(const Subframe& subframe);
 
 }  // namespace vbar::twins::gnss

@@ -2,7 +2,10 @@
 // Binary logs as NovAtel's OEM6 and OEM7 receivers send them (OEM6 Family Firmware Reference Manual, OM-20000129):
 // a long header of 28 bytes, a body, a CRC-32; little-endian. Each function appends one log to `bytes`.
 
+#include <bit>
+#include <concepts>
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -10,7 +13,7 @@
 #include "fsw/core/gps_time.h"
 #include "fsw/core/types.h"
 #include "host_sim/twins/gnss/constellation.h"
-#include "host_sim/twins/gnss/leap_seconds.h"
+#include "host_sim/twins/gnss/system_time.h"
 
 namespace vbar::twins::gnss::oem {
 
@@ -135,5 +138,45 @@ void append_status_event(Bytes& bytes, const Header& header, const StatusEvent& 
 /// Appends the answer to the binary command `id`.
 void append_response(Bytes& bytes, const Header& header, std::uint16_t id, std::uint32_t response,
                      std::string_view text);
+
+// One binary message of an OEM6 receiver: header, fields, CRC-32; little-endian.
+
+/// Computes NovAtel's CRC-32: the standard polynomial, but initialised with 0 and not inverted.
+std::uint32_t crc32(std::span<const std::uint8_t> bytes);
+
+/// Writer of a message. The header is written at once, its length and the CRC by finish().
+class MessageWriter {
+ public:
+  MessageWriter(Bytes& bytes, MessageId id, const Header& header, bool is_response = false);
+
+  void u8(std::uint8_t value) { bytes_.push_back(value); }
+  void u16(std::uint16_t value) { little_endian(value); }
+  void u32(std::uint32_t value) { little_endian(value); }
+  void i32(std::int32_t value) { little_endian(static_cast<std::uint32_t>(value)); }
+  void f32(double value) { little_endian(std::bit_cast<std::uint32_t>(static_cast<float>(value))); }
+  void f64(double value) { little_endian(std::bit_cast<std::uint64_t>(value)); }
+  void f64s(std::initializer_list<double> values) {
+    for (const double value : values) f64(value);
+  }
+  void zeros(int count) {
+    for (int k = 0; k < count; ++k) u8(0);
+  }
+  /// Writes a field of `size` characters, cut or filled with zeros.
+  void text(std::string_view value, std::size_t size) {
+    for (std::size_t k = 0; k < size; ++k) u8(k < value.size() ? static_cast<std::uint8_t>(value[k]) : 0);
+  }
+
+  void finish();
+
+ private:
+  template <std::unsigned_integral T>
+  void little_endian(T value) {
+    for (std::size_t k = 0; k < sizeof(T); ++k)
+      bytes_.push_back(static_cast<std::uint8_t>((value >> (8U * k)) & 0xFFU));
+  }
+
+  Bytes& bytes_;
+  std::size_t begin_;
+};
 
 }  // namespace vbar::twins::gnss::oem

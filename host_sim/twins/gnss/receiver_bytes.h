@@ -11,7 +11,7 @@
 
 #include "fsw/core/gps_time.h"
 #include "fsw/core/types.h"
-#include "host_sim/io/wired_receiver.h"
+#include "host_sim/io/serial_line.h"
 #include "host_sim/twins/packet_source.h"
 
 namespace vbar::twins::gnss {

@@ -2,9 +2,105 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <sstream>
+#include <stdexcept>
 #include <string>
 
+#include <fmt/format.h>
+
+#include "host_sim/files/data_stream.h"
+#include "host_sim/files/text_lines.h"
+
 namespace vbar::twins::gnss {
+
+namespace {
+
+double power_ratio(double db) {
+  return std::pow(10.0, db / 10.0);
+}
+
+// Reference point of the specified power: at 5 deg elevation on the ground, from the orbit's height.
+double reference_distance_m(System system) {
+  switch (system) {
+    case System::kGps:
+      return 25.24e6;
+    case System::kGalileo:
+      return 28.26e6;
+    case System::kBeidou:
+      return 26.55e6;
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+AntennaPattern AntennaPattern::load(const std::filesystem::path& data_directory) {
+  const std::filesystem::path file = data_directory / "gps" / "receiver_antenna_typical_patch.csv";
+  files::DataStream in(file);
+  if (!in) throw std::runtime_error(fmt::format("{}: cannot be read", file.string()));
+  AntennaPattern pattern;
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    if (line.empty() || line.front() == '#' || line.starts_with("boresight_angle_deg,")) continue;
+    Node node{};
+    char comma = 0;
+    std::istringstream text(line);
+    const bool read = static_cast<bool>(text >> node.angle_deg >> comma >> node.attenuation_db) && comma == ',';
+    const bool rising =
+        pattern.nodes_.empty() ? node.angle_deg == 0.0 : node.angle_deg > pattern.nodes_.back().angle_deg;
+    if (!read || !rising)
+      throw std::runtime_error(fmt::format("{}:{}: {} is not an ascending angle and an attenuation", file.string(),
+                                           number, files::quoted(line)));
+    pattern.nodes_.push_back(node);
+  }
+  if (pattern.nodes_.size() < 2 || pattern.nodes_.back().angle_deg != 180.0)
+    throw std::runtime_error(fmt::format("{}: the angles must reach 180 deg", file.string()));
+  return pattern;
+}
+
+double AntennaPattern::attenuation_db(double cosine) const {
+  const double angle_deg = std::acos(std::clamp(cosine, -1.0, 1.0)) * 180.0 / std::numbers::pi;
+  const auto after = std::upper_bound(nodes_.begin() + 1, nodes_.end() - 1, angle_deg,
+                                      [](double angle, const Node& node) { return angle < node.angle_deg; });
+  const Node& low = *(after - 1);
+  const double fraction = (angle_deg - low.angle_deg) / (after->angle_deg - low.angle_deg);
+  return low.attenuation_db + fraction * (after->attenuation_db - low.attenuation_db);
+}
+
+double carrier_to_noise_dbhz(const LinkBudgetSettings& settings, Signal signal, double distance_m,
+                             double antenna_attenuation_db) {
+  constexpr double kBoltzmann = 1.380649e-23;
+  constexpr double kReferenceTemperature_k = 290.0;
+  const double temperature_k = settings.antenna_temperature_k +
+                               kReferenceTemperature_k * (power_ratio(settings.lna_noise_figure_db) - 1.0) +
+                               kReferenceTemperature_k * (power_ratio(settings.receiver_noise_figure_db) - 1.0) /
+                                   power_ratio(settings.lna_gain_db);
+  const SignalStructure& s = structure(signal);
+  const double received_dbw = s.received_power_dbw + 20.0 * std::log10(reference_distance_m(s.system) / distance_m);
+  return received_dbw + settings.boresight_gain_dbi - antenna_attenuation_db - settings.losses_db -
+         10.0 * std::log10(kBoltzmann * temperature_k);
+}
+
+double code_noise_m(const TrackingSettings& settings, Signal signal, double cn0_dbhz) {
+  const SignalStructure& s = structure(signal);
+  const double cn0 = power_ratio(cn0_dbhz);
+  const double d = s.correlator_spacing_chips;
+  const double chips = std::sqrt(settings.code_loop_bandwidth_hz * d / (2.0 * cn0) *
+                                 (1.0 + 2.0 / ((2.0 - d) * settings.integration_s * cn0)));
+  return fsw::gnss::kSpeedOfLight / s.chip_rate_hz * chips;
+}
+
+double carrier_noise_m(const TrackingSettings& settings, Signal signal, double cn0_dbhz) {
+  const double cn0 = power_ratio(cn0_dbhz);
+  return wavelength_m(signal) / (2.0 * std::numbers::pi) *
+         std::sqrt(settings.carrier_loop_bandwidth_hz / cn0 * (1.0 + 1.0 / (2.0 * settings.integration_s * cn0)));
+}
+
+double range_rate_noise_mps(const TrackingSettings& settings, Signal signal, double cn0_dbhz) {
+  return std::numbers::sqrt2 * carrier_noise_m(settings, signal, cn0_dbhz) * settings.carrier_loop_bandwidth_hz;
+}
+
 namespace {
 
 // Initial integers of a count of cycles: large enough not to be guessed.

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/integration/angles_only/observability_bound.h"
+#include "tests/integration/angles_only/true_flight.h"
 #include "tests/support/accuracy.h"
 
 namespace vbar::test {
@@ -20,14 +20,14 @@ constexpr double kWaypointHours[] = {6.0, 12.0, 18.0, 24.0, 28.0, 32.0, 36.0};
 fsw::filter::FilterSettings blocks_for(const TrueFlight& flight, const SensorErrors& errors) {
   fsw::filter::FilterSettings settings;
   settings.earth = flight.earth;
-  settings.processes.of<fsw::sources::CentroidWander>() = {.sigma = errors.shape_share * kTargetRadius_m,
-                                                           .time_s = errors.shape_time_s};
+  settings.processes.of<fsw::measurements::CentroidWander>() = {.sigma = errors.shape_share * kTargetRadius_m,
+                                                                .time_s = errors.shape_time_s};
   return settings;
 }
 
 /// The simulated centroid wanders, and has no noise in addition.
-fsw::sources::BearingSettings bearings_for() {
-  fsw::sources::BearingSettings settings;
+fsw::measurements::BearingSettings bearings_for() {
+  fsw::measurements::BearingSettings settings;
   settings.model.centroid_noise_m = 0.0;
   settings.batch.bearings = 40;
   return settings;
@@ -43,7 +43,7 @@ struct Outcome {
   std::vector<AtWaypoint> waypoints;
   double far_nis = 0.0;         ///< mean, of bearings to a point
   double own_orbit_nees = 0.0;  ///< mean, of an image in ten minutes after the first hour
-  fsw::sources::BearingCounters counters;
+  fsw::measurements::BearingCounters counters;
 };
 
 Outcome navigate(const TrueFlight& flight, const SensorErrors& errors, unsigned seed) {
@@ -56,18 +56,18 @@ Outcome navigate(const TrueFlight& flight, const SensorErrors& errors, unsigned 
     const MeasuredEpoch epoch = sensors.measure(k);
     const auto status = navigation.update(epoch, sensors.known_burns());
     const bool is_point = epoch.bearing && epoch.bearing->apparent_radius < 0.5 * epoch.bearing->sigma;
-    if (status == fsw::sources::BearingEditStatus::kFilter && is_point) {
+    if (status == fsw::measurements::BearingEditStatus::kFilter && is_point) {
       outcome.far_nis += navigation.bearings().last_update().nis;
       ++far;
     }
     if (k > 60 && k % 10 == 0) {
-      outcome.own_orbit_nees += own_orbit_nees(flight.epochs[k], navigation.trunk());
+      outcome.own_orbit_nees += own_orbit_nees(flight.epochs[k], navigation.filter());
       ++own_orbits;
     }
     const std::size_t next = outcome.waypoints.size();
     if (next < 7 && k == TrueFlight::at_hours(kWaypointHours[next]) && navigation.valid()) {
-      const fsw::Vector3 error = estimated_position_rtn(navigation.trunk()) - true_position_rtn(flight.epochs[k]);
-      outcome.waypoints.push_back({error.norm(), roe_nees(flight.epochs[k], navigation.trunk())});
+      const fsw::Vector3 error = estimated_position_rtn(navigation.filter()) - true_position_rtn(flight.epochs[k]);
+      outcome.waypoints.push_back({error.norm(), roe_nees(flight.epochs[k], navigation.filter())});
     }
   }
   outcome.far_nis /= std::max(far, 1);

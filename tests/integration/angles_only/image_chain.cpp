@@ -5,12 +5,12 @@
 
 #include <Eigen/Geometry>
 
-#include "fsw/imaging/tile_packing.h"
 #include "fsw/orbit/rtn.h"
 #include "fsw/packets/messages.h"
+#include "fsw/vision/imaging/image_assembly.h"
 #include "host_sim/truth/earth/sun_moon.h"
 #include "host_sim/truth/earth/time_scales.h"
-#include "host_sim/twins/camera/exposure_of_truth.h"
+#include "host_sim/twins/camera/exposure.h"
 #include "tests/support/paths.h"
 
 namespace vbar::test {
@@ -35,8 +35,8 @@ Matrix3 camera_axes(const Vector3& boresight_eci, const Vector3& zenith_eci) {
   return R;
 }
 
-fsw::angles_only::CameraSettings calibrated(const twins::camera::CameraSettings& camera) {
-  fsw::angles_only::CameraSettings settings;
+fsw::target_tracking::CameraSettings calibrated(const twins::camera::CameraSettings& camera) {
+  fsw::target_tracking::CameraSettings settings;
   settings.frame = {camera.region.width, camera.region.height, camera.region.x, camera.region.y, camera.detector.bits};
   settings.model.focal_length_px.setConstant(camera.focal_length_px());
   settings.model.principal_point_px = {camera.optics.principal_point_px[0], camera.optics.principal_point_px[1]};
@@ -130,17 +130,17 @@ void ImageChain::configure(const twins::camera::CameraSettings& camera, double c
   tracking_->configure(settings);
 }
 
-const fsw::angles_only::Sighting& ImageChain::look_at(const Scene& scene, std::span<const std::uint16_t> dn) {
+const fsw::target_tracking::Sighting& ImageChain::look_at(const Scene& scene, std::span<const std::uint16_t> dn) {
   return process(scene, tiles_of(scene, dn));
 }
 
-const fsw::angles_only::Sighting& ImageChain::look(const Scene& scene, const Spoil& spoil) {
+const fsw::target_tracking::Sighting& ImageChain::look(const Scene& scene, const Spoil& spoil) {
   std::vector<image_tile> tiles = tiles_of(scene, image_of(scene));
   if (spoil) spoil(tiles);
   return process(scene, tiles);
 }
 
-const fsw::angles_only::Sighting& ImageChain::look_at_uniform(const Scene& scene, int dn) {
+const fsw::target_tracking::Sighting& ImageChain::look_at_uniform(const Scene& scene, int dn) {
   return look(scene, [dn](std::vector<image_tile>& tiles) {
     for (image_tile& tile : tiles) {
       const std::vector<std::uint16_t> pixels(static_cast<std::size_t>(tile.pixels), static_cast<std::uint16_t>(dn));
@@ -149,9 +149,9 @@ const fsw::angles_only::Sighting& ImageChain::look_at_uniform(const Scene& scene
   });
 }
 
-const fsw::angles_only::Sighting& ImageChain::process(const Scene& scene, const std::vector<image_tile>& tiles) {
+const fsw::target_tracking::Sighting& ImageChain::process(const Scene& scene, const std::vector<image_tile>& tiles) {
   for (const image_tile& tile : tiles) static_cast<void>(assembly_->take(scene.exposure.time, 0, tile));
-  fsw::angles_only::ImagePriors priors;
+  fsw::target_tracking::ImagePriors priors;
   priors.is_orbit_known = true;
   priors.servicer = scene.servicer;
   priors.velocity_over_c_eci = (scene.exposure.earth_velocity_bcrs + scene.servicer.velocity_eci) / 299792458.0;
@@ -162,7 +162,7 @@ const fsw::angles_only::Sighting& ImageChain::process(const Scene& scene, const 
   covariance.diagonal().head<3>().setConstant(1e-6 * range * range);
   covariance.diagonal().tail<3>().setConstant(1e-12 * range * range);
   const auto prediction =
-      fsw::tracking::prediction_of(fsw::orbit::relative_state_rtn(scene.servicer, scene.target), covariance);
+      fsw::target_tracking::prediction_of(fsw::orbit::relative_state_rtn(scene.servicer, scene.target), covariance);
   if (prediction.ok()) priors.target = prediction.value();
   priors.detection_probability = scene.exposure.objects.at(0).sunlit > 0.5 ? 0.95 : 0.0;
   const auto& sighting = tracking_->process(

@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "fsw/angles_only/angles_only_tracking.h"
-#include "fsw/imaging/image_assembly.h"
+#include "fsw/vision/imaging/image_assembly.h"
+#include "fsw/vision/target_tracking/angles_only_tracking.h"
 #include "host_sim/twins/camera/exposure.h"
 #include "host_sim/twins/camera/image_maker.h"
 #include "host_sim/twins/camera/scene.h"
@@ -63,12 +63,12 @@ class ImageChain {
   using Spoil = std::function<void(std::vector<image_tile>&)>;
 
   /// `spoil` may change the tiles on their way.
-  const fsw::angles_only::Sighting& look(const Scene& scene, const Spoil& spoil = {});
+  const fsw::target_tracking::Sighting& look(const Scene& scene, const Spoil& spoil = {});
   /// The same of an image of the same value in all pixels.
-  const fsw::angles_only::Sighting& look_at_uniform(const Scene& scene, int dn);
+  const fsw::target_tracking::Sighting& look_at_uniform(const Scene& scene, int dn);
 
   /// The same of pixels that another camera has taken.
-  const fsw::angles_only::Sighting& look_at(const Scene& scene, std::span<const std::uint16_t> dn);
+  const fsw::target_tracking::Sighting& look_at(const Scene& scene, std::span<const std::uint16_t> dn);
   /// The flight software is configured for that camera from now on; its centroids err by `centroid_floor_px`.
   void configure(const twins::camera::CameraSettings& camera, double centroid_floor_px);
   /// The pixels of the digital camera.
@@ -79,14 +79,14 @@ class ImageChain {
 
  private:
   [[nodiscard]] std::vector<image_tile> tiles_of(const Scene& scene, std::span<const std::uint16_t> dn) const;
-  const fsw::angles_only::Sighting& process(const Scene& scene, const std::vector<image_tile>& tiles);
+  const fsw::target_tracking::Sighting& process(const Scene& scene, const std::vector<image_tile>& tiles);
 
   twins::camera::CameraSettings camera_;
   twins::camera::SceneRenderer renderer_;
   twins::camera::ImageMaker maker_;
   std::unique_ptr<fsw::imaging::ImageAssembly> assembly_ = std::make_unique<fsw::imaging::ImageAssembly>();
-  std::unique_ptr<fsw::angles_only::AnglesOnlyTracking> tracking_ =
-      std::make_unique<fsw::angles_only::AnglesOnlyTracking>();
+  std::unique_ptr<fsw::target_tracking::AnglesOnlyTracking> tracking_ =
+      std::make_unique<fsw::target_tracking::AnglesOnlyTracking>();
 };
 
 }  // namespace vbar::test

@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "tests/integration/angles_only/observability_bound.h"
 #include "tests/integration/angles_only/true_flight.h"
 #include "tests/support/figures.h"
 
@@ -37,13 +36,13 @@ int main(int argc, char** argv) {
     fsw::filter::FilterSettings blocks;
     blocks.earth = flight.earth;
     blocks.relative_orbit.acceleration.psd = option("PSD", blocks.relative_orbit.acceleration.psd);
-    blocks.processes.of<fsw::sources::BearingBias>().sigma = option("BIAS_SIGMA", 3.0) / 206264.8;
+    blocks.processes.of<fsw::measurements::BearingBias>().sigma = option("BIAS_SIGMA", 3.0) / 206264.8;
     blocks.burn_sigma_relative = option("MAN", blocks.burn_sigma_relative);
-    blocks.processes.of<fsw::sources::CentroidWander>() = {.sigma = option("WANDER", 0.035),
-                                                           .time_s = option("WANDER_TIME", 300.0)};
+    blocks.processes.of<fsw::measurements::CentroidWander>() = {.sigma = option("WANDER", 0.035),
+                                                                .time_s = option("WANDER_TIME", 300.0)};
     blocks.absolute_orbit.slow_error_sigma_m = option("OWN_SIGMA", blocks.absolute_orbit.slow_error_sigma_m);
     blocks.absolute_orbit.acceleration_psd = option("OWN_PSD", blocks.absolute_orbit.acceleration_psd);
-    fsw::sources::BearingSettings bearings;
+    fsw::measurements::BearingSettings bearings;
     bearings.model.centroid_noise_m = option("CENTROID", 0.0);
     test::AnglesOnlyFlight navigation(blocks, bearings, sensors.apriori());
     std::size_t waypoint = 0;
@@ -52,28 +51,29 @@ int main(int argc, char** argv) {
     int updates = 0;
     std::printf("%3u", seed);
     for (std::size_t k = 0; k < flight.epochs.size(); ++k) {
-      if (navigation.update(sensors.measure(k), sensors.known_burns()) == fsw::sources::BearingEditStatus::kFilter) {
+      if (navigation.update(sensors.measure(k), sensors.known_burns()) ==
+          fsw::measurements::BearingEditStatus::kFilter) {
         nis += navigation.bearings().last_update().nis;
         ++updates;
       }
-      if (k % 10 == 0 && k > 60) own += test::own_orbit_nees(flight.epochs[k], navigation.trunk()) / 210.0;
+      if (k % 10 == 0 && k > 60) own += test::own_orbit_nees(flight.epochs[k], navigation.filter()) / 210.0;
       if (waypoint < 7 && k == test::TrueFlight::at_hours(kHours[waypoint])) {
         const fsw::Vector3 error =
-            test::estimated_position_rtn(navigation.trunk()) - test::true_position_rtn(flight.epochs[k]);
+            test::estimated_position_rtn(navigation.filter()) - test::true_position_rtn(flight.epochs[k]);
         const fsw::Matrix6 covariance =
-            fsw::filter::covariance_rtn(navigation.trunk().estimate(), navigation.trunk().servicer());
+            fsw::filter::covariance_rtn(navigation.filter().estimate(), navigation.filter().servicer());
         const double sigma = std::sqrt(covariance.topLeftCorner<3, 3>().trace());
         std::printf(" | %8.2f (%7.2f) %4.1f", error.norm(), sigma,
-                    test::roe_nees(flight.epochs[k], navigation.trunk()));
-        nees[waypoint] += test::roe_nees(flight.epochs[k], navigation.trunk()) / seeds;
+                    test::roe_nees(flight.epochs[k], navigation.filter()));
+        nees[waypoint] += test::roe_nees(flight.epochs[k], navigation.filter()) / seeds;
         errors[waypoint].push_back(error.norm());
         ++waypoint;
       }
     }
     const auto& counters = navigation.bearings().counters();
     std::printf(" | psd %.0e nis %.3f own orbit %.2f used %d refused %d failed %d inflated %d restarts %d\n",
-                navigation.trunk().relative_orbit().noise().psd(), nis / updates, own, counters.used, counters.rejected,
-                counters.batches_failed, counters.inflations, counters.restarts);
+                navigation.filter().relative_orbit().noise().psd(), nis / updates, own, counters.used,
+                counters.rejected, counters.batches_failed, counters.inflations, counters.restarts);
   }
   std::printf("med");
   for (const auto& of : errors) std::printf(" | %8.2f          ", vbar::accuracy::median(of));

@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "fsw/navigation/burn.h"
+#include "fsw/filter/propagation.h"
+#include "fsw/measurements/bearings/bearing_aiding.h"
 #include "fsw/orbit/earth_rotation.h"
-#include "fsw/sources/bearings/bearing_aiding.h"
 
 namespace vbar::test {
 
@@ -31,7 +31,7 @@ struct TrueEpoch {
 
 struct TrueFlight {
   std::vector<TrueEpoch> epochs;
-  std::vector<fsw::navigation::Burn> burns;
+  std::vector<fsw::filter::Burn> burns;
   fsw::orbit::EarthOrientation earth;
 
   /// Index in `epochs` of hours after the start.
@@ -59,7 +59,7 @@ struct MeasuredEpoch {
   fsw::GpsTime time;  ///< of the image
   fsw::Vector3 sun_eci = fsw::Vector3::Zero();
   std::vector<std::pair<fsw::GpsTime, fsw::filter::AbsolutePosition>> positions;
-  std::optional<fsw::navigation::BearingMeasurement> bearing;
+  std::optional<fsw::target_tracking::BearingMeasurement> bearing;
 };
 
 /// Measured epochs in order of time.
@@ -71,7 +71,7 @@ class SimulatedSensors {
   /// Two-line-element quality: 1 sigma a * (da, dl, de, di) of 30, 1000, 200, 200 m.
   fsw::filter::TargetApriori apriori();
   /// As flight software knows them.
-  const std::vector<fsw::navigation::Burn>& known_burns() const { return known_burns_; }
+  const std::vector<fsw::filter::Burn>& known_burns() const { return known_burns_; }
 
  private:
   double normal() { return standard_(random_); }
@@ -85,7 +85,7 @@ class SimulatedSensors {
   double brightness_offset_m_;
   fsw::Vector2 shape_ = fsw::Vector2::Zero();
   fsw::Vector3 gnss_slow_ = fsw::Vector3::Zero();
-  std::vector<fsw::navigation::Burn> known_burns_;
+  std::vector<fsw::filter::Burn> known_burns_;
 };
 
 /// The target's position in the servicer's RTN, m: true, and as navigation has it.
@@ -93,16 +93,16 @@ fsw::Vector3 true_position_rtn(const TrueEpoch& epoch);
 /// RelativeNavigationFilter, own receiver and bearings, as the flight software composes them.
 class AnglesOnlyFlight {
  public:
-  AnglesOnlyFlight(const fsw::filter::FilterSettings& blocks, const fsw::sources::BearingSettings& bearings,
+  AnglesOnlyFlight(const fsw::filter::FilterSettings& blocks, const fsw::measurements::BearingSettings& bearings,
                    const fsw::filter::TargetApriori& apriori);
-  fsw::sources::BearingEditStatus update(const MeasuredEpoch& epoch, const std::vector<fsw::navigation::Burn>& burns);
+  fsw::measurements::BearingEditStatus update(const MeasuredEpoch& epoch, const std::vector<fsw::filter::Burn>& burns);
   [[nodiscard]] bool valid() const { return filter_->solution_status() == fsw::filter::SolutionStatus::kEstimated; }
-  [[nodiscard]] const fsw::filter::RelativeNavigationFilter& trunk() const { return *filter_; }
-  [[nodiscard]] const fsw::sources::BearingAiding& bearings() const { return bearings_; }
+  [[nodiscard]] const fsw::filter::RelativeNavigationFilter& filter() const { return *filter_; }
+  [[nodiscard]] const fsw::measurements::BearingAiding& bearings() const { return bearings_; }
 
  private:
   std::unique_ptr<fsw::filter::RelativeNavigationFilter> filter_;
-  fsw::sources::BearingAiding bearings_;
+  fsw::measurements::BearingAiding bearings_;
 };
 
 /// Normalised error squared of the estimated ROE: six on average if the filter is honest.
@@ -110,5 +110,21 @@ double roe_nees(const TrueEpoch& epoch, const fsw::filter::RelativeNavigationFil
 /// Of the servicer's own orbit, position and velocity: likewise.
 double own_orbit_nees(const TrueEpoch& epoch, const fsw::filter::RelativeNavigationFilter& filter);
 fsw::Vector3 estimated_position_rtn(const fsw::filter::RelativeNavigationFilter& filter);
+
+// How well any unbiased navigation could know the target's orbit: Cramer and Rao's bound from all bearings, with the
+// dynamics, the servicer's orbit and its burns known exactly. What a filter is worse by, it or its models lose.
+
+struct BoundSettings {
+  double bearing_sigma = 12.0 / 206264.8;  ///< rad
+  double resolved_share = 0.25;            ///< of the apparent radius, as the filter takes it
+  double bias_sigma = 3.0 / 206264.8;      ///< rad, each axis, constant; 0: none
+  fsw::Vector6 prior_sigma_a_roe_m = (fsw::Vector6() << 30.0, 1000.0, 200.0, 200.0, 200.0, 200.0).finished();
+};
+
+/// 1 sigma of the length of the relative position's error, m, at each of `epochs` (indices, increasing), from the lit
+/// bearings up to and with it. The target never burns, so its orbit has six unknowns; slopes by central differences
+/// over the whole arc in the on-board gravity field.
+std::vector<double> position_bound(const TrueFlight& flight, const std::vector<std::size_t>& epochs,
+                                   const BoundSettings& settings = {});
 
 }  // namespace vbar::test

@@ -11,13 +11,17 @@
 #include <utility>
 #include <vector>
 
-#include "fsw/gnc/inbox.h"
-#include "fsw/gnc/navigation.h"
 #include "fsw/gnss/lambda.h"
-#include "host_sim/app/simulation.h"
+#include "fsw/messaging/inbox.h"
+#include "fsw/navigation/navigation.h"
+#include "fsw/packets/messages.h"
 #include "host_sim/mission/mission.h"
+#include "host_sim/simulation/simulation.h"
 #include "host_sim/truth/truth_model.h"
-#include "host_sim/twins/gnss_sensor.h"
+#include "host_sim/twins/gnss/gnss_sensor.h"
+#include "pil_bridge/flight_computer.h"
+#include "tests/integration/rendezvous/run_mission.h"
+#include "tests/support/figures.h"
 
 namespace vbar::test {
 
@@ -54,10 +58,10 @@ class EmulatedPair {
   void fly(int epochs = 1);
   [[nodiscard]] bool done() const { return next_ >= coast_.epochs().size(); }
 
-  [[nodiscard]] const fsw::gnc::NavigationSolution& navigation() const { return *navigation_; }
-  [[nodiscard]] const fsw::filter::RelativeNavigationFilter& trunk() const { return measurements_->trunk(); }
-  [[nodiscard]] const fsw::sources::CarrierAiding& carrier() const {
-    return measurements_->source<fsw::sources::CarrierSource>().aiding();
+  [[nodiscard]] const fsw::navigation::NavigationSolution& navigation() const { return *navigation_; }
+  [[nodiscard]] const fsw::filter::RelativeNavigationFilter& filter() const { return measurements_->filter(); }
+  [[nodiscard]] const fsw::measurements::CdgnssAiding& carrier() const {
+    return measurements_->source<fsw::measurements::CdgnssSource>().aiding();
   }
   /// Whether there is a relative orbit from measurements.
   [[nodiscard]] bool valid() const { return measurements_->valid(); }
@@ -90,7 +94,7 @@ class EmulatedPair {
     fsw::gnss::IntegerSolution integers;
   };
   [[nodiscard]] std::optional<Offer> offer() const;
-  /// The flight code's filter and trunk, to be tampered with.
+  /// The flight code's filter and filter, to be tampered with.
   void hold(std::size_t place, std::size_t reference, double cycles);
 
   void measure(const twins::TruthSnapshot& truth);
@@ -102,12 +106,56 @@ class EmulatedPair {
   std::vector<app::Source> sensors_;  ///< servicer's, then target's
   std::vector<Arrival> under_way_;
   std::map<fsw::GpsTime, Integers> integers_;  ///< target minus servicer
-  fsw::gnc::Inbox inbox_;
-  fsw::gnc::Telecommands telecommands_;
-  std::unique_ptr<fsw::gnc::TrunkNavigation> measurements_;
-  std::unique_ptr<fsw::gnc::NavigationSolution> navigation_;
+  fsw::messaging::Inbox inbox_;
+  fsw::messaging::Telecommands telecommands_;
+  std::unique_ptr<fsw::navigation::MeasurementScheduler> measurements_;
+  std::unique_ptr<fsw::navigation::NavigationSolution> navigation_;
   Tamper tamper_;
   std::size_t next_ = 0;
 };
+
+// Whole flights of missions/experiment3.toml and what is asked of them.
+
+/// Errors of one flight from its first fix on.
+struct Flight {
+  FlownMission flown;
+  std::optional<double> first_fix_s;  ///< after the start
+  double mean_position_m = 0.0;
+  double mean_velocity_mps = 0.0;
+  accuracy::Largest largest_position_m;
+};
+
+/// Flies it from this seed. Fails the test if it does not come to its end.
+Flight fly_experiment3(std::uint64_t seed, std::vector<std::string> overrides = {}, const Wrap& wrap = {});
+
+/// Telemetry of one kind, decoded, in order.
+template <class Message>
+std::vector<Message> telemetry_of(const FlownMission& flown);
+
+// The bytes of a receiver on their way to the flight software, for tests that spoil them: taken out of the packets of a
+// step, changed, and put back into packets.
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// Both receivers' bytes of one step; either may be empty.
+struct ReceiverBytes {
+  Bytes servicer;
+  Bytes target;
+};
+
+/// Changes the bytes of steps `first` to `last`.
+Wrap spoil_steps(std::uint32_t first, std::uint32_t last, const std::function<void(ReceiverBytes&)>& spoil);
+
+/// Calls `edit(id, message)` for each message of NovAtel's binary format in `bytes`, which holds whole ones; `message`
+/// is header and body, which may change in content and length. Length field and check sum are then made right again.
+void edit_messages(Bytes& bytes, const std::function<void(int id, Bytes& message)>& edit);
+
+/// Bytes of a message's header, and its numbers (OM-20000129).
+inline constexpr std::size_t kOemHeaderBytes = 28;
+inline constexpr int kRange = 43, kRawEphem = 41, kGalEphemeris = 1122, kBdsEphemeris = 1696;
+
+/// RANGE: a count, and records of so many bytes, which begin with the satellite's number (16 bits), GLONASS frequency
+/// (16 bits), and pseudorange (double).
+inline constexpr std::size_t kRangeRecordBytes = 44;
 
 }  // namespace vbar::test

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <termios.h>
 
-#include "host_sim/io/byte_channels.h"
+#include "host_sim/io/byte_channel.h"
 #include "host_sim/io/child_process.h"
 #include "host_sim/io/udp_socket.h"
 #include "tests/integration/flight_computers/echo_computer.h"

@@ -2,15 +2,37 @@
 // How well the pose network's front end does: errors of keypoints and poses against the truth, and against what they
 // themselves say they are.
 
+#include <array>
 #include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "fsw/network/keypoint_network.h"
-#include "tests/integration/pose/labelled_view.h"
+#include "fsw/vision/imaging/camera_model.h"
+#include "fsw/vision/pose/crop.h"
+#include "fsw/vision/pose/keypoint.h"
+#include "fsw/vision/pose/keypoint_network.h"
+#include "fsw/vision/pose/pnp.h"
 
 namespace vbar::test {
+
+// A crop of which everything is known, and crops in files as training writes them (host_sim/training/shard_file.h).
+
+struct LabelledView {
+  fsw::pose::CropSamples samples{};  ///< standardised
+  fsw::pose::CropRegion region;
+  fsw::imaging::CameraModel camera;
+  fsw::pose::TargetPose truth;
+  std::array<fsw::Vector2, fsw::pose::kKeypoints> cells;  ///< true places on the map
+  std::array<bool, fsw::pose::kKeypoints> counts{};       ///< on the map, or beyond its edge by half a cell at most
+};
+
+/// As cut_crop standardises them.
+void standardise(fsw::pose::CropSamples& samples);
+
+/// All crops of a shard, standardised. Throws std::runtime_error that names the file if it is not one.
+std::vector<LabelledView> read_shard(const std::filesystem::path& file);
 
 /// A keypoint that was taken for usable and is on the map.
 struct KeypointError {
@@ -59,7 +81,7 @@ class FrontEndErrors {
   void add_keypoint(const fsw::pose::Keypoint& keypoint, const LabelledView& view, std::size_t k);
   void add_pose(const fsw::pose::Keypoints& keypoints, const LabelledView& view);
 
-  std::unique_ptr<fsw::network::KeypointNetwork> network_;
+  std::unique_ptr<fsw::pose::KeypointNetwork> network_;
   fsw::pose::KeypointShape shape_;
   fsw::pose::PnpSettings settings_;
   std::vector<KeypointError> keypoints_;

@@ -36,7 +36,7 @@ LabelledView view_of(const training::LabelledCrop& crop, const twins::camera::Ca
 const FrontEndErrors& held_out() {
   static const FrontEndErrors errors = [] {
     training::CropMaker maker(mission::data_directory(), "tango", training::CropKind::kHeldOut, kHeldOutSeed);
-    FrontEndErrors all(fsw::network::weights_on_board(), tango_shape(), {});
+    FrontEndErrors all(fsw::pose::weights_on_board(), tango_shape(), {});
     training::LabelledCrop crop;
     for (int index = 0; index < kCrops; ++index) {
       maker.make(index, crop);

@@ -15,7 +15,7 @@
 #include <fmt/format.h>
 
 #include "host_sim/mission/data_directory.h"
-#include "host_sim/training/target_shape.h"
+#include "host_sim/training/circumstances.h"
 #include "tests/integration/pose/front_end_errors.h"
 
 namespace {

@@ -13,10 +13,10 @@
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/safety/retreat.h"
-#include "host_sim/app/initial_orbits.h"
-#include "host_sim/sensors/sensor_kinds.h"
+#include "host_sim/installation/sensor_kinds.h"
+#include "host_sim/simulation/initial_state.h"
 #include "host_sim/truth/truth_model.h"
-#include "tests/integration/rendezvous/flown_mission.h"
+#include "tests/integration/rendezvous/run_mission.h"
 #include "tests/support/figures.h"
 #include "tests/support/paths.h"
 

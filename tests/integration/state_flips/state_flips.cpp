@@ -1,9 +1,9 @@
 // vbar_state_flips SNAPSHOT...: bits of the estimate of a flown mission change between two steps.
 //
 // SNAPSHOT is a file of `vbar replay RUN --save SNAPSHOT --at-h H`. The flight software continues from it; then one bit
-// at a random location of its trunk (mean, covariance, reference attitude, own orbit, states of sources) changes before
-// a step: 100 times, each time from the same state. The step must report the change and, but for that report, give
-// the same answer as without it.
+// at a random location of its filter (mean, covariance, reference attitude, own orbit, states of sources) changes
+// before a step: 100 times, each time from the same state. The step must report the change and, but for that report,
+// give the same answer as without it.
 
 #include <cstdio>
 #include <fstream>
@@ -23,7 +23,7 @@ std::vector<std::string> snapshot_files;
 constexpr Duration kPeriod = duration_of_seconds(5);
 
 std::span<unsigned char> filter_in(Article& article) {
-  return bytes_of(state_of(article).measurements_.trunk());
+  return bytes_of(state_of(article).measurements_.filter());
 }
 
 /// The bytes behind the line of text at the beginning.
@@ -67,6 +67,6 @@ TEST(StateFlips, AreReportedAndCorrectedInTheNextStep) {
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
-  vbar::fsw::gnc::test::snapshot_files.assign(argv + 1, argv + argc);
+  vbar::fsw::messaging::test::snapshot_files.assign(argv + 1, argv + argc);
   return RUN_ALL_TESTS();
 }

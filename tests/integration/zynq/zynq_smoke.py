@@ -41,7 +41,7 @@ def inputs(step):
 
 
 class HostArticle:
-    """The example article in this process, through the C interface of fsw/gnc/vbar_gnc.h."""
+    """The example article in this process, through the C interface of fsw/messaging/vbar_gnc.h."""
 
     def __init__(self, path, spacecraft=1):
         sink_type = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.POINTER(ctypes.c_uint8), ctypes.c_size_t)

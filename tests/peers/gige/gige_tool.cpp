@@ -15,7 +15,7 @@
 #include <fmt/format.h>
 
 #include "hil_drivers/gige/camera/camera.h"
-#include "tests/unit/hil_drivers/gige/running_device.h"
+#include "tests/unit/emulators/gige/running_device.h"
 
 namespace {
 

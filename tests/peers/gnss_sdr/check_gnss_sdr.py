@@ -27,7 +27,7 @@ WAVELENGTH_M = LIGHT_MPS / 1575.42e6
 GPS_EPOCH = datetime.datetime(1980, 1, 6)
 WEEK_S = 604800
 
-# gnss-sdr's carrier loop as configured: hil_drivers/grand/bench/samples/gnss_sdr/configuration.cpp.
+# gnss-sdr's carrier loop as configured: emulators/grand/samples/gnss_sdr_process.cpp.
 PLL_HZ, INTEGRATION_S = 15.0, 0.010
 
 # Satellites with a larger Doppler are reported and not judged: the phase that gnss-sdr 0.0.17 reports of them wanders by up to

@@ -26,10 +26,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "hil_drivers/grand/bench/receiver/receiver.h"
-#include "hil_drivers/grand/bench/samples/baseband.h"
-#include "hil_drivers/grand/bench/samples/gnss_sdr/configuration.h"
-#include "hil_drivers/grand/bench/samples/gnss_sdr/gnss_sdr_measurements.h"
+#include "emulators/grand/receiver/receiver.h"
+#include "emulators/grand/samples/baseband.h"
+#include "emulators/grand/samples/gnss_sdr_measurements.h"
+#include "emulators/grand/samples/gnss_sdr_process.h"
 #include "host_sim/io/file_descriptor.h"
 #include "tests/peers/gnss_sdr/sky_in_orbit.h"
 #include "tests/support/gnss_scene.h"

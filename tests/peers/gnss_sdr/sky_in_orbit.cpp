@@ -5,7 +5,7 @@
 
 #include <Eigen/Dense>
 
-#include "host_sim/twins/gnss/klobuchar.h"
+#include "host_sim/twins/gnss/constellation.h"
 #include "host_sim/twins/gnss/signal_path.h"
 #include "tests/support/gnss_scene.h"
 

@@ -4,11 +4,11 @@
 
 #include <memory>
 
+#include "emulators/grand/radio_field/rf_block.h"
 #include "fsw/core/types.h"
-#include "hil_drivers/grand/bench/rf_block.h"
 #include "host_sim/twins/gnss/constellation.h"
 #include "host_sim/twins/gnss/gnss_settings.h"
-#include "host_sim/twins/gnss/signal_noise.h"
+#include "host_sim/twins/gnss/tracking.h"
 
 namespace vbar::test {
 

@@ -7,8 +7,8 @@
 #include <iostream>
 #include <thread>
 
-#include "hil_drivers/grand/pps/chrony_output.h"
-#include "hil_drivers/grand/pps/edge_broadcaster.h"
+#include "emulators/grand/generator/edge_broadcaster.h"
+#include "hil_drivers/grand/pps/time_base.h"
 
 namespace {
 

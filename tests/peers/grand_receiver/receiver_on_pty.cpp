@@ -20,9 +20,9 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include "emulators/grand/receiver/receiver.h"
 #include "fsw/gnss/receiver_decoder.h"
-#include "hil_drivers/grand/bench/receiver/receiver.h"
-#include "host_sim/io/byte_channels.h"
+#include "host_sim/io/byte_channel.h"
 #include "tests/support/synthetic_sky.h"
 
 namespace {

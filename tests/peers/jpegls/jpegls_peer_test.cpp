@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "host_sim/twins/camera/detector.h"
-#include "host_sim/twins/camera/recorded_image.h"
+#include "host_sim/twins/camera/logged_image.h"
 
 namespace vbar::twins::camera {
 namespace {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "fsw/network/keypoint_network.h"
+#include "fsw/vision/pose/keypoint_network.h"
 
 int main(int argc, char** argv) {
   using namespace vbar::fsw::network;

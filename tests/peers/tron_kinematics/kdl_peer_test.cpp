@@ -12,7 +12,7 @@
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <kdl/chainjnttojacsolver.hpp>
 
-#include "hil_drivers/tron/kinematics/arm.h"
+#include "hil_drivers/tron/geometry/kinematics.h"
 #include "tests/support/accuracy.h"
 #include "tests/support/paths.h"
 
@@ -22,7 +22,7 @@ namespace {
 constexpr int kPostures = 10000;
 
 ArmDesign design() {
-  return read_bench_file(tests::source_path("data/benches/tron.toml")).camera_robot.design;
+  return read_testbed_design(tests::source_path("data/benches/tron.toml")).camera_robot.design;
 }
 
 /// As ArmDesign describes it: the axes at zero angles, and the steps from each to the next.

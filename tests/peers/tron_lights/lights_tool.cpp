@@ -12,8 +12,8 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include "hil_drivers/tron/bench/lights/light_receiver.h"
-#include "hil_drivers/tron/sacn/sender.h"
+#include "emulators/tron/lights.h"
+#include "hil_drivers/tron/protocols/sacn.h"
 
 namespace {
 

@@ -13,7 +13,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "fsw/link/cobs.h"
+#include "fsw/link/frame.h"
 #include "fsw/packets/crc.h"
 #include "fsw/packets/messages.h"
 #include "fsw/packets/segmentation.h"

@@ -1,5 +1,5 @@
 /* Has the functions of a test article but one. */
-#include "fsw/gnc/vbar_gnc.h"
+#include "fsw/messaging/vbar_gnc.h"
 
 int32_t vbar_gnc_abi_version(void) {
   return VBAR_GNC_ABI_VERSION;

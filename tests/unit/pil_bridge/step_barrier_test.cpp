@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pil_bridge/in_process.h"
 #include "pil_bridge/link_faults.h"
+#include "pil_bridge/test_article.h"
 #include "tests/support/step_packets.h"
 #include "tests/unit/pil_bridge/loopback_board.h"
 

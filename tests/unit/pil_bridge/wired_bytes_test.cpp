@@ -1,8 +1,6 @@
 // The host's side of a receiver that is wired to the flight computer: when a step may begin, and what the recorded
 // inputs are.
 
-#include "pil_bridge/wired_bytes.h"
-
 #include <array>
 #include <string>
 #include <thread>
@@ -12,7 +10,8 @@
 #include <gtest/gtest.h>
 
 #include "fsw/packets/messages.h"
-#include "host_sim/io/byte_channels.h"
+#include "host_sim/io/byte_channel.h"
+#include "pil_bridge/remote_computer.h"
 
 namespace vbar::pil {
 namespace {

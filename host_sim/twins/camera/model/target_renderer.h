@@ -1,19 +1,30 @@
 #pragma once
-// Light of a spacecraft at any range: its CAD model rendered at its own scale, in linear radiometric units.
-//
-// The picture is fitted to the sphere around the body and has a number of texels that follows from the apparent
-// size; a body of a hundredth of a pixel is rendered with the accuracy of a near one, so its brightness varies with
-// attitude and phase as that of a real one.
+// What the shaders of surfaces take: materials, and the Earth's light as a table.
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "fsw/core/types.h"
-#include "host_sim/twins/camera/light_sample.h"
 #include "host_sim/twins/camera/model/cad_model.h"
+#include "host_sim/twins/camera/object_view.h"
 
 namespace vbar::twins::camera {
+
+/// Returns albedo, reflectivity, the same at grazing incidence, roughness. A reflectivity below 4 %, glass with a
+/// coating or plain paint, rises less at grazing incidence; zero stays zero. Roughness from the exponent: Walter et al.
+/// (2007), section 5.2.
+std::array<float, 4> shader_material(const Material& material);
+
+/// Tabulates earth_light_factor() at even steps of the cosine from -1 to 1.
+std::vector<float> earth_table(double sine_earth);
+
+// Light of a spacecraft at any range: its CAD model rendered at its own scale, in linear radiometric units.
+//
+// The picture is fitted to the sphere around the body and has a number of texels that follows from the apparent
+// size; a body of a hundredth of a pixel is rendered with the accuracy of a near one, so its brightness varies with
+// attitude and phase as that of a real one.
 
 /// One body and its illumination. Camera axes: z boresight, x right, y down; the body may be out of the field.
 struct TargetView {

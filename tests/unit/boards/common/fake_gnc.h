@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "fsw/gnc/vbar_gnc.h"
+#include "fsw/messaging/vbar_gnc.h"
 
 namespace vbar::testing {
 

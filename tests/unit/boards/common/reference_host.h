@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "boards/common/flight_executive.h"
-#include "fsw/link/cobs.h"
 #include "fsw/link/frame.h"
 #include "tests/unit/boards/common/fake_gnc.h"
 

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "fsw/gnc/vbar_gnc.h"
+#include "fsw/messaging/vbar_gnc.h"
 #include "fsw/packets/messages.h"
 
 namespace vbar {

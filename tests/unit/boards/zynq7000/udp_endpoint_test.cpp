@@ -4,6 +4,7 @@
 
 #include <array>
 #include <numeric>
+#include <random>
 #include <string_view>
 
 #include <gmock/gmock.h>
@@ -12,6 +13,7 @@
 #include "tests/unit/boards/zynq7000/network_frames.h"
 
 namespace vbar::boards::zynq7000 {
+
 namespace {
 
 using testing::ElementsAreArray;
@@ -140,4 +142,170 @@ TEST_F(UdpEndpointTest, RefusesDatagramThatDoesNotFit) {
 }
 
 }  // namespace
+
+// Nothing that arrives can make the endpoint read past a frame, answer where it must not, or deliver what was not sent.
+// Frames are given as vectors of exactly their length, so that the address sanitizer sees any byte read beyond.
+
+namespace {
+
+constexpr std::array<std::uint8_t, 5> kPayload{0xDE, 0xAD, 0xBE, 0xEF, 0x01};
+
+class HostileFramesTest : public testing::Test {
+ protected:
+  UdpEvent receive(const Frame& frame) { return endpoint_.receive(Frame(frame), reply_).event; }
+  void expect_malformed(const Frame& frame) {
+    const std::uint32_t before = endpoint_.counters().malformed;
+    EXPECT_EQ(receive(frame), UdpEvent::kNothing);
+    EXPECT_EQ(endpoint_.counters().malformed, before + 1);
+  }
+  void expect_not_for_us(const Frame& frame) {
+    const std::uint32_t before = endpoint_.counters().not_for_us;
+    EXPECT_EQ(receive(frame), UdpEvent::kNothing);
+    EXPECT_EQ(endpoint_.counters().not_for_us, before + 1);
+  }
+
+  UdpEndpoint endpoint_{kBoardMac, kBoardAddress, kBoardPort};
+  std::array<std::uint8_t, kMaxEthernetFrameBytes> reply_{};
+};
+
+TEST_F(HostileFramesTest, TruncatedAnywhere) {
+  for (const Frame& whole : {recorded_arp_request(), recorded_datagram(), ipv4_frame(udp(kPayload))}) {
+    // The recorded ARP request is padded: its last 18 bytes may go.
+    const std::size_t needed = whole[13] == 0x06 ? 42 : whole.size();
+    for (std::size_t size = 0; size < needed; ++size) {
+      expect_malformed(Frame(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)));
+    }
+  }
+}
+
+// Past the Ethernet header every bit is covered by a checksum or must have one value.
+TEST_F(HostileFramesTest, AnyFlippedBitOfADatagramIsSeen) {
+  const Frame good = ipv4_frame(udp(kPayload));
+  ASSERT_EQ(receive(good), UdpEvent::kDatagram);
+  for (std::size_t bit = 8 * kEthernetHeaderBytes; bit < 8 * good.size(); ++bit) {
+    Frame bad = good;
+    bad[bit / 8] = static_cast<std::uint8_t>(bad[bit / 8] ^ (1U << (bit % 8)));
+    EXPECT_EQ(receive(bad), UdpEvent::kNothing) << "bit " << bit;
+  }
+}
+
+TEST_F(HostileFramesTest, LengthsThatLie) {
+  const Frame good = ipv4_frame(udp(kPayload));
+  for (const std::size_t total :
+       {std::size_t{0}, std::size_t{19}, std::size_t{27}, good.size() - 13, std::size_t{65535}}) {
+    Frame bad = good;
+    set16(bad, 16, total);
+    set16(bad, 24, 0);
+    set16(bad, 24, reference_checksum(std::span(bad).subspan(14, 20)));
+    expect_malformed(bad);
+  }
+  for (const std::size_t size : {0, 7, 14, 65535}) {
+    Frame datagram = udp(kPayload);
+    set16(datagram, 4, size);
+    set16(datagram, 6, 0);  // no checksum that could give it away
+    expect_malformed(ipv4_frame(datagram));
+  }
+  Frame short_header = good;
+  short_header[14] = 0x44;  // 16 bytes of header
+  set16(short_header, 24, 0);
+  set16(short_header, 24, reference_checksum(std::span(short_header).subspan(14, 16)));
+  expect_malformed(short_header);
+  Frame long_header = good;
+  long_header[14] = 0x4F;  // 60 bytes of header in a packet of 33
+  expect_malformed(long_header);
+  expect_malformed(Frame(kMaxEthernetFrameBytes + 1, 0));
+}
+
+TEST_F(HostileFramesTest, Fragments) {
+  expect_malformed(ipv4_frame(udp(kPayload), {.fragment = 0x2000}));  // more to come
+  expect_malformed(ipv4_frame(udp(kPayload), {.fragment = 0x0001}));  // not the first
+}
+
+TEST_F(HostileFramesTest, SendersThatCannotBe) {
+  for (const Ipv4Address& source : {Ipv4Address{0, 0, 0, 0}, Ipv4Address{127, 0, 0, 1}, Ipv4Address{224, 0, 0, 1},
+                                    Ipv4Address{255, 255, 255, 255}, kBoardAddress}) {
+    Ipv4Options options;
+    options.source = source;
+    expect_malformed(ipv4_frame(udp(kPayload, options), options));
+  }
+  expect_malformed(ipv4_frame(udp(kPayload), {.source_mac = {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF}}));
+  expect_malformed(ipv4_frame(udp(kPayload, {}, 0)));
+}
+
+TEST_F(HostileFramesTest, GroupsAndOthersAreNotServed) {
+  expect_not_for_us(ipv4_frame(udp(kPayload), {.destination_mac = {0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF}}));
+  expect_not_for_us(ipv4_frame(udp(kPayload), {.destination_mac = {0x02, 0, 0, 0, 0, 1}}));
+  for (const Ipv4Address& destination : {Ipv4Address{10, 0, 2, 255}, Ipv4Address{255, 255, 255, 255}}) {
+    Ipv4Options options;
+    options.destination = destination;
+    expect_not_for_us(ipv4_frame(udp(kPayload, options), options));
+  }
+  expect_not_for_us(ipv4_frame(udp(kPayload, {}, 40000, 5001)));
+  expect_not_for_us(ipv4_frame(kPayload, {.protocol = 6}));
+  Frame version6 = recorded_datagram();
+  set16(version6, 12, 0x86DD);
+  expect_not_for_us(version6);
+}
+
+TEST_F(HostileFramesTest, EchoThatIsNone) {
+  Frame reply = {0, 0, 0xFF, 0xFF, 0, 0, 0, 0};  // an echo reply: answering it would never end
+  expect_not_for_us(ipv4_frame(reply, {.protocol = 1}));
+  expect_malformed(ipv4_frame(Frame{8, 0, 0, 0, 1, 2, 3, 4}, {.protocol = 1}));  // checksum
+  expect_malformed(ipv4_frame(Frame{8, 0, 0xF7}, {.protocol = 1}));
+}
+
+TEST_F(HostileFramesTest, ArpThatLies) {
+  Frame claims_our_address = recorded_arp_request();
+  claims_our_address[31] = 15;
+  expect_malformed(claims_our_address);
+  Frame from_group = recorded_arp_request();
+  from_group[22] = 0xFF;
+  expect_malformed(from_group);
+  Frame other_lengths = recorded_arp_request();
+  other_lengths[18] = 255;
+  expect_malformed(other_lengths);
+  Frame unasked = recorded_arp_request();
+  unasked[21] = 2;
+  expect_not_for_us(unasked);
+}
+
+TEST_F(HostileFramesTest, ReplyBufferTooSmallIsNoReply) {
+  std::array<std::uint8_t, 59> small{};
+  EXPECT_EQ(endpoint_.receive(recorded_arp_request(), small).event, UdpEvent::kNothing);
+  Frame ping = {8, 0, 0, 0, 0, 0, 0, 0};
+  set16(ping, 2, reference_checksum(ping));
+  EXPECT_EQ(endpoint_.receive(ipv4_frame(ping, {.protocol = 1}), small).event, UdpEvent::kNothing);
+}
+
+// 300,000 good frames with random bytes in random places: every one is counted exactly once, whatever it is taken for,
+// and no datagram is delivered that lies outside its frame.
+TEST_F(HostileFramesTest, RandomDamage) {
+  std::mt19937 random(20240521);  // NOLINT: the same frames in every run
+  Frame ping = {8, 0, 0, 0, 1, 2, 3, 4};
+  set16(ping, 2, reference_checksum(ping));
+  const std::array<Frame, 4> seeds{recorded_arp_request(), recorded_datagram(), ipv4_frame(udp(kPayload)),
+                                   ipv4_frame(ping, {.protocol = 1})};
+  constexpr std::uint32_t kFrames = 300'000;
+  for (std::uint32_t i = 0; i < kFrames; ++i) {
+    Frame frame = seeds[random() % seeds.size()];
+    frame.resize(1 + random() % (2 * frame.size()));
+    for (std::uint32_t changes = random() % 4; changes > 0; --changes) {
+      frame[random() % frame.size()] = static_cast<std::uint8_t>(random());
+    }
+    const UdpReceived received = endpoint_.receive(frame, reply_);
+    if (received.event == UdpEvent::kDatagram) {
+      ASSERT_GE(received.bytes.data(), frame.data());
+      ASSERT_LE(received.bytes.data() + received.bytes.size(), frame.data() + frame.size());
+    }
+  }
+  const UdpCounters& counters = endpoint_.counters();
+  EXPECT_EQ(
+      counters.datagrams + counters.arp_replies + counters.echo_replies + counters.not_for_us + counters.malformed,
+      kFrames);
+  EXPECT_GT(counters.datagrams, 0U);
+  EXPECT_GT(counters.echo_replies, 0U);
+}
+
+}  // namespace
+
 }  // namespace vbar::boards::zynq7000

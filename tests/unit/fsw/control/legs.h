@@ -4,7 +4,7 @@
 #include <array>
 
 #include "fsw/control/plan.h"
-#include "fsw/orbit/secular.h"
+#include "fsw/orbit/propagate.h"
 #include "tests/unit/fsw/orbit/mission.h"
 
 namespace vbar::fsw::control::legs {

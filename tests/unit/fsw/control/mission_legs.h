@@ -2,7 +2,7 @@
 // The close legs of the rendezvous as control problems, from the mission's waypoint table and servicer orbit.
 
 #include "fsw/control/plan.h"
-#include "fsw/orbit/secular.h"
+#include "fsw/orbit/propagate.h"
 
 namespace vbar::fsw::control {
 

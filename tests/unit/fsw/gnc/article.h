@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "fsw/gnc/vbar_gnc.h"
-#include "tests/unit/fsw/gnc/packet_factory.h"
+#include "fsw/messaging/vbar_gnc.h"
+#include "tests/unit/fsw/messaging/configurations.h"
 
 namespace vbar::fsw::gnc::test {
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "fsw/gnc/state_integrity.h"
+#include "fsw/navigation/state_integrity.h"
 #include "tests/unit/fsw/gnc/small_world.h"
 
 namespace vbar::fsw::gnc::test {

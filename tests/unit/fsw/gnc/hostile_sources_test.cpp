@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "fsw/gnc/message_fields.h"
-#include "tests/unit/fsw/gnc/configurations.h"
+#include "fsw/messaging/message_fields.h"
 #include "tests/unit/fsw/gnc/small_world.h"
-#include "tests/unit/fsw/imaging/image_tiles.h"
+#include "tests/unit/fsw/messaging/configurations.h"
+#include "tests/unit/fsw/vision/imaging/synthetic_images.h"
 
 namespace vbar::fsw::gnc::test {
 namespace {

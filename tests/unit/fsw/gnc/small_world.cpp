@@ -1,6 +1,6 @@
 #include "tests/unit/fsw/gnc/small_world.h"
 
-#include "fsw/gnc/management.h"
+#include "fsw/guidance/management.h"
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/propagate.h"
 #include "fsw/orbit/roe.h"

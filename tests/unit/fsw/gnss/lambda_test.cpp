@@ -13,7 +13,6 @@
 
 #include <gtest/gtest.h>
 
-#include "fsw/gnss/decorrelation.h"
 #include "tests/support/accuracy.h"
 #include "tests/support/allocation_counter.h"
 #include "tests/unit/fsw/gnss/ambiguity_problems.h"

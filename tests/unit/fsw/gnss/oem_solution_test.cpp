@@ -12,8 +12,7 @@
 
 #include "fsw/gnss/gps_week.h"
 #include "tests/support/paths.h"
-#include "tests/unit/fsw/gnss/novatel_vectors.h"
-#include "tests/unit/fsw/gnss/oem_bytes_writer.h"
+#include "tests/unit/fsw/gnss/oem_messages.h"
 
 namespace vbar::fsw::gnss {
 namespace {

@@ -1,6 +1,6 @@
-// Simulates the table of fsw/gnss/ratio_threshold.cpp: the ratio of second-best to best squared norm that the integers
-// must reach so that wrong ones are accepted in no more than 1 of 1000 problems (the ratio test with fixed failure rate
-// of Teunissen and Verhagen 2009), by number of ambiguities and by the failure rate of bootstrapping.
+// Simulates the table of fsw/gnss/ambiguity_validation.cpp: the ratio of second-best to best squared norm that the
+// integers must reach so that wrong ones are accepted in no more than 1 of 1000 problems (the ratio test with fixed
+// failure rate of Teunissen and Verhagen 2009), by number of ambiguities and by the failure rate of bootstrapping.
 //
 //   ninja -C build/host vbar_ratio_table && build/host/tests/unit/fsw/gnss/vbar_ratio_table
 //
@@ -18,7 +18,6 @@
 #include <functional>
 #include <vector>
 
-#include "fsw/gnss/decorrelation.h"
 #include "fsw/gnss/lambda.h"
 #include "tests/support/figures.h"
 #include "tests/unit/fsw/gnss/ambiguity_problems.h"

@@ -11,10 +11,9 @@
 
 #include <gtest/gtest.h>
 
-#include "fsw/imaging/tile_packing.h"
-#include "fsw/link/cobs.h"
 #include "fsw/link/frame.h"
 #include "fsw/packets/messages.h"
+#include "fsw/vision/imaging/image_assembly.h"
 #include "tests/support/paths.h"
 
 namespace vbar::fsw {

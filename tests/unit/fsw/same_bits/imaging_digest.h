@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
-#include "fsw/imaging/camera_model.h"
-#include "fsw/imaging/object_detector.h"
+#include "fsw/vision/imaging/camera_model.h"
+#include "fsw/vision/imaging/object_detector.h"
 #include "tests/unit/fsw/same_bits/digest.h"
 
 namespace vbar::same_bits {

@@ -11,7 +11,6 @@
 #include "fsw/orbit/propagate.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
-#include "fsw/orbit/secular.h"
 #include "fsw/safety/collision_probability.h"
 #include "fsw/safety/passive_safety.h"
 #include "tests/unit/fsw/same_bits/ambiguity_digest.h"

@@ -7,8 +7,8 @@
 #include <Eigen/Geometry>
 
 #include "fsw/orbit/sun.h"
-#include "fsw/stars/catalogue.h"
-#include "fsw/stars/star_identification.h"
+#include "fsw/vision/stars/catalogue.h"
+#include "fsw/vision/stars/star_identification.h"
 #include "tests/unit/fsw/same_bits/digest.h"
 
 namespace vbar::same_bits {

@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "hil_drivers/external/encoded_packet.h"
+#include "hil_drivers/external/exchange.h"
 
 namespace vbar::external {
 namespace {

@@ -12,7 +12,7 @@
 #include "fsw/orbit/constants.h"
 #include "fsw/orbit/rtn.h"
 #include "fsw/packets/messages.h"
-#include "hil_drivers/external/served_truth.h"
+#include "hil_drivers/external/source_server.h"
 
 namespace vbar::external {
 namespace {

@@ -1,19 +1,28 @@
 // Campaign files: what they expand to, and what is refused.
 
+#include "host_sim/campaign/campaign_file.h"
+
+#include <algorithm>
 #include <bit>
+#include <clocale>
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <locale>
+#include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "host_sim/campaign/plan.h"
-#include "host_sim/campaign/value_text.h"
+#include "host_sim/engine/random_stream.h"
 #include "host_sim/mission/mission_error.h"
 #include "tests/support/paths.h"
 #include "tests/unit/host_sim/campaign/campaign_text.h"
 
 namespace vbar::campaign {
+
 namespace {
 
 using test::campaign_of;
@@ -134,4 +143,191 @@ TEST(CampaignFile, OfEveryExampleIsRead) {
 }
 
 }  // namespace
+
+// The numbers of a case are a function of the campaign's seed, the key and the case's seed, whatever else the file
+// holds.
+
+namespace {
+
+using test::value_of;
+
+constexpr const char* kMass = R"(
+[[disperse]]
+key = "mass"
+distribution = "uniform"
+low = 0.0
+high = 1.0
+)";
+constexpr const char* kArea = R"(
+[[disperse]]
+key = "area"
+distribution = "normal"
+mean = 3.0
+sigma = 0.5
+)";
+constexpr const char* kLoss = R"(
+[[sweep]]
+key = "loss"
+values = [0.0, 0.05]
+)";
+
+TEST(Draws, ComeFromTheStreamNamedByTheKeyAtTheSeedOfTheCase) {
+  const CampaignFile campaign = campaign_of("seeds = \"5..9\"\nseed = 7", kMass);
+  for (const std::uint64_t seed : {5U, 9U}) {
+    const double expected = engine::RandomStream(7, "mass").uniforms_of(seed)[0];
+    EXPECT_EQ(value_of(campaign, seed, {}, "mass"), text_of(expected));
+  }
+}
+
+TEST(Draws, DoNotDependOnOtherKeysSeedsOrSweepValues) {
+  const CampaignFile alone = campaign_of("seeds = \"1..5\"", std::string(kLoss) + kMass);
+  const CampaignFile more_keys = campaign_of("seeds = \"1..5\"", std::string(kArea) + kLoss + kMass);
+  const CampaignFile more_seeds = campaign_of("seeds = [40, 5, 3, 9, 1]", std::string(kLoss) + kMass);
+  const CampaignFile more_values =
+      campaign_of("seeds = \"1..5\"", std::string("[[sweep]]\nkey = \"loss\"\nvalues = [0.3, 0.0, 0.05]\n") + kMass);
+  for (const std::uint64_t seed : {1U, 3U, 5U}) {
+    const std::string expected = value_of(alone, seed, {"0.05"}, "mass");
+    for (const CampaignFile* other : {&more_keys, &more_seeds, &more_values})
+      EXPECT_EQ(value_of(*other, seed, {"0.05"}, "mass"), expected);
+  }
+  EXPECT_NE(value_of(alone, 1, {"0.05"}, "mass"), value_of(alone, 3, {"0.05"}, "mass"));
+}
+
+TEST(Draws, OfSweepPointsAreCommonUnlessTheFileSaysOtherwise) {
+  const CampaignFile common = campaign_of("seeds = \"1..5\"", std::string(kLoss) + kMass);
+  EXPECT_EQ(value_of(common, 2, {"0.0"}, "mass"), value_of(common, 2, {"0.05"}, "mass"));
+  const CampaignFile own = campaign_of("seeds = \"1..5\"\ncommon_draws = false", std::string(kLoss) + kMass);
+  EXPECT_NE(value_of(own, 2, {"0.0"}, "mass"), value_of(own, 2, {"0.05"}, "mass"));
+  const CampaignFile more = campaign_of("seeds = \"1..6\"\ncommon_draws = false",
+                                        std::string("[[sweep]]\nkey = \"loss\"\nvalues = [0.3, 0.05]\n") + kMass);
+  EXPECT_EQ(value_of(own, 2, {"0.05"}, "mass"), value_of(more, 2, {"0.05"}, "mass"));
+}
+
+TEST(Draws, OfALatinHypercubeLieInOneStratumEach) {
+  const CampaignFile campaign = campaign_of("seeds = \"1..50\"\nsampling = \"latin\"", kMass);
+  std::set<int> strata;
+  for (const Case& one : expand(campaign)) strata.insert(static_cast<int>(std::floor(50.0 * std::stod(one.values[0]))));
+  EXPECT_EQ(strata.size(), 50U);
+}
+
+TEST(Draws, AreWrittenInTheSameWayInEveryLocale) {
+  const std::string before = cases_text({"mass"}, expand(campaign_of("seeds = \"1..3\"", kMass)));
+  struct Comma : std::numpunct<char> {
+    char do_decimal_point() const override { return ','; }
+    char do_thousands_sep() const override { return '.'; }
+    std::string do_grouping() const override { return "\3"; }
+  };
+  const std::locale old = std::locale::global(std::locale(std::locale::classic(), new Comma));
+  std::setlocale(LC_ALL, "de_DE.UTF-8");
+  const std::string now = cases_text({"mass"}, expand(campaign_of("seeds = \"1..3\"", kMass)));
+  std::locale::global(old);
+  std::setlocale(LC_ALL, "C");
+  EXPECT_EQ(now, before);
+}
+
+TEST(Draws, HaveTheMeanAndDeviationOfTheirDistribution) {
+  constexpr const char* kFile = R"(
+[[disperse]]
+key = "normal"
+distribution = "normal"
+mean = 3.0
+sigma = 0.5
+[[disperse]]
+key = "cut"
+distribution = "normal"
+mean = 0.0
+sigma = 1.0
+low = -1.0
+high = 1.0
+[[disperse]]
+key = "log"
+distribution = "log_uniform"
+low = 1.0
+high = 100.0
+[[disperse]]
+key = "integer"
+distribution = "integer"
+low = 1
+high = 6
+)";
+  std::vector<std::vector<double>> columns(4);
+  for (const Case& one : expand(campaign_of("seeds = \"1..20000\"", kFile)))
+    for (std::size_t k = 0; k < 4; ++k) columns[k].push_back(std::stod(one.values[k]));
+  const auto moments = [](const std::vector<double>& values) {
+    double sum = 0.0, squares = 0.0;
+    for (const double v : values) sum += v;
+    const double mean = sum / static_cast<double>(values.size());
+    for (const double v : values) squares += (v - mean) * (v - mean);
+    return std::pair(mean, std::sqrt(squares / static_cast<double>(values.size())));
+  };
+  // Five standard deviations of the estimates from 20,000 draws.
+  const auto [normal_mean, normal_sigma] = moments(columns[0]);
+  EXPECT_NEAR(normal_mean, 3.0, 0.018);
+  EXPECT_NEAR(normal_sigma, 0.5, 0.013);
+  const auto [cut_mean, cut_sigma] = moments(columns[1]);
+  EXPECT_NEAR(cut_mean, 0.0, 0.02);
+  EXPECT_NEAR(cut_sigma, 0.53956, 0.02);  // of a standard normal cut off at one sigma
+  EXPECT_TRUE(std::ranges::all_of(columns[1], [](double v) { return v >= -1.0 && v <= 1.0; }));
+  EXPECT_NEAR(moments(columns[2]).first, 99.0 / std::log(100.0), 1.0);
+  EXPECT_NEAR(moments(columns[3]).first, 3.5, 0.06);
+  EXPECT_EQ(std::set<double>(columns[3].begin(), columns[3].end()), (std::set<double>{1, 2, 3, 4, 5, 6}));
+}
+
+TEST(Draws, OfCorrelatedKeysHaveTheCovarianceOfTheFile) {
+  constexpr const char* kFile = R"(
+[[disperse]]
+keys = ["a", "b"]
+mean = [1.0, -2.0]
+covariance = [[4.0, 3.0], [3.0, 9.0]]
+)";
+  double aa = 0.0, ab = 0.0, bb = 0.0, count = 0.0;
+  for (const Case& one : expand(campaign_of("seeds = \"1..20000\"", kFile))) {
+    const double a = std::stod(one.values[0]) - 1.0, b = std::stod(one.values[1]) + 2.0;
+    aa += a * a, ab += a * b, bb += b * b, count += 1.0;
+  }
+  EXPECT_NEAR(aa / count, 4.0, 0.2);
+  EXPECT_NEAR(ab / count, 3.0, 0.25);
+  EXPECT_NEAR(bb / count, 9.0, 0.45);
+}
+
+TEST(Draws, OfADirectionHaveItsLengthAndNoPreferredAxis) {
+  constexpr const char* kFile = R"(
+[[disperse]]
+key = "axis"
+distribution = "direction"
+length = 2.0
+)";
+  double sum[3] = {}, squares[3] = {}, count = 0.0;
+  for (const Case& one : expand(campaign_of("seeds = \"1..20000\"", kFile))) {
+    double v[3] = {};
+    ASSERT_EQ(std::sscanf(one.values[0].c_str(), "[%lf, %lf, %lf]", &v[0], &v[1], &v[2]), 3);
+    ASSERT_NEAR(std::hypot(std::hypot(v[0], v[1]), v[2]), 2.0, 1e-12);
+    for (int k = 0; k < 3; ++k) sum[k] += v[k], squares[k] += v[k] * v[k];
+    count += 1.0;
+  }
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(sum[k] / count, 0.0, 0.045);
+    EXPECT_NEAR(squares[k] / count, 4.0 / 3.0, 0.05);
+  }
+}
+
+TEST(Draws, OfAChoiceFollowTheWeights) {
+  constexpr const char* kFile = R"(
+[[disperse]]
+key = "mode"
+distribution = "choice"
+values = ["warm", "hot", "cold"]
+weights = [3.0, 1.0, 0.0]
+)";
+  double warm = 0.0, all = 0.0;
+  for (const Case& one : expand(campaign_of("seeds = \"1..20000\"", kFile))) {
+    ASSERT_TRUE(one.values[0] == "warm" || one.values[0] == "hot") << one.values[0];
+    warm += one.values[0] == "warm" ? 1.0 : 0.0;
+    all += 1.0;
+  }
+  EXPECT_NEAR(warm / all, 0.75, 0.016);
+}
+
+}  // namespace
+
 }  // namespace vbar::campaign

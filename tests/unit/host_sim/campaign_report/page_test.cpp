@@ -1,18 +1,22 @@
+#include "host_sim/campaign_report/page.h"
+
+#include <cmath>
 #include <fstream>
+#include <random>
 #include <regex>
 #include <stdexcept>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "host_sim/campaign_report/distribution_plots.h"
-#include "host_sim/campaign_report/write_page.h"
+#include "host_sim/campaign_report/quantity.h"
+#include "host_sim/campaign_report/statistics.h"
 #include "tests/support/paths.h"
 #include "tests/unit/host_sim/campaign_report/synthetic_campaign.h"
-#include "tests/unit/host_sim/report/program_output.h"
-#include "tests/unit/host_sim/report/scratch_folder.h"
+#include "tests/unit/host_sim/report/synthetic_run.h"
 
 namespace vbar::campaign_report::test {
+
 namespace {
 
 using testing::HasSubstr;
@@ -161,4 +165,118 @@ TEST(DistributionSteps, AreAtMostThatManyAndHoldBothEnds) {
 }
 
 }  // namespace
+
+namespace {
+
+using testing::ElementsAre;
+
+Campaign campaign_with(const std::vector<std::string>& keys, const std::vector<std::vector<std::string>>& inputs) {
+  Campaign campaign;
+  campaign.keys = keys;
+  for (const auto& values : inputs) {
+    Case& one = campaign.cases.emplace_back();
+    one.number = campaign.cases.size() - 1;
+    one.inputs = values;
+    one.state = State::kComplete;
+    one.passed = true;
+  }
+  return campaign;
+}
+
+TEST(Drivers, AreNumbersComponentsOfVectorsAndSwitches) {
+  const Campaign campaign = campaign_with({"mass_kg", "axis", "moon", "solver", "same"},
+                                          {{"1.5", "[1.0, 0.0, 2.0]", "true", "closed_form", "3"},
+                                           {"2e-3", "[0.5, 0.0, -2.0]", "false", "least_squares", "3"}});
+  std::vector<std::string> others;
+  const std::vector<Driver> found = drivers(campaign, others);
+  ASSERT_EQ(found.size(), 4U);
+  EXPECT_EQ(found[0].name, "mass_kg");
+  EXPECT_THAT(found[0].values, ElementsAre(1.5, 0.002));
+  EXPECT_EQ(found[1].name, "axis[0]");
+  EXPECT_EQ(found[2].name, "axis[2]") << "the second component is constant";
+  EXPECT_THAT(found[2].values, ElementsAre(2.0, -2.0));
+  EXPECT_THAT(found[3].values, ElementsAre(1.0, 0.0));
+  EXPECT_THAT(others, ElementsAre("solver", "same"));
+}
+
+// Failed cases have no figures, but it is them that an engineer asks about.
+TEST(Drivers, FailedCasesCountAsNotPassed) {
+  std::vector<std::vector<std::string>> inputs;
+  for (int k = 0; k < 30; ++k) inputs.push_back({std::to_string(k)});
+  Campaign campaign = campaign_with({"loss"}, inputs);
+  for (std::size_t k = 20; k < 30; ++k) campaign.cases[k].state = State::kFailed;
+  campaign.cases[0].state = State::kLost;
+  campaign.cases[1].passed = false;
+  const std::vector<Response> found = responses(campaign, {});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_TRUE(std::isnan(found[0].values[0])) << "a lost case shows nothing";
+  EXPECT_EQ(found[0].values[1], 1.0);
+  EXPECT_EQ(found[0].values[2], 0.0);
+  EXPECT_EQ(found[0].values[29], 1.0);
+  std::vector<std::string> others;
+  const std::vector<Driver> inputs_of = drivers(campaign, others);
+  const std::vector<Dependence> all = dependences(inputs_of, found);
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_GT(all[0].correlation.rho, 0.6);
+  EXPECT_TRUE(all[0].is_significant());
+}
+
+}  // namespace
+
+namespace {
+
+constexpr double kConfidence = 0.95;
+constexpr Plane kPlane{"RN", 0, 2};
+
+// Of a circular Gaussian without bias: CEP is 1.1774 sigma, R95 2.4477 sigma (Rayleigh distribution).
+TEST(Miss, RadiiOfACircularGaussian) {
+  std::mt19937_64 engine(1);
+  std::normal_distribution<double> normal(0.0, 3.0);
+  VectorError error;
+  for (int k = 0; k < 4000; ++k) error.errors_rtn_m.push_back({normal(engine), 1e3, normal(engine)});
+  const PlaneMiss miss = miss_in(kPlane, error, kConfidence);
+  ASSERT_TRUE(miss.cep_m.estimate && miss.r95_m.estimate && miss.cep_m.lower && miss.r95_m.upper);
+  // Standard errors of the two quantiles of 4000 values: 1.3 and 1.5 % of themselves; four of them.
+  EXPECT_NEAR(*miss.cep_m.estimate, 1.1774 * 3.0, 0.2);
+  EXPECT_NEAR(*miss.r95_m.estimate, 2.4477 * 3.0, 0.44);
+  EXPECT_LT(*miss.cep_m.lower, *miss.cep_m.estimate);
+  EXPECT_GT(*miss.r95_m.upper, *miss.r95_m.estimate);
+  EXPECT_NEAR(miss.sigma_m[0], 3.0, 0.2);
+  EXPECT_NEAR(miss.sigma_m[1], 3.0, 0.2);
+}
+
+// Four cases on an ellipse about (10, 20), with semi-axes along (3, 4) / 5 and across it: covariance by hand.
+TEST(Miss, EllipseOfTheSampleCovariance) {
+  VectorError error;
+  for (const auto& [along, across] : {std::pair{5.0, 0.0}, {-5.0, 0.0}, {0.0, 2.0}, {0.0, -2.0}})
+    error.errors_rtn_m.push_back({10.0 + 0.6 * along - 0.8 * across, 0.0, 20.0 + 0.8 * along + 0.6 * across});
+  const PlaneMiss miss = miss_in(kPlane, error, kConfidence);
+  EXPECT_NEAR(miss.mean_m[0], 10.0, 1e-14);
+  EXPECT_NEAR(miss.mean_m[1], 20.0, 1e-14);
+  EXPECT_NEAR(miss.sigma_m[0], std::sqrt(50.0 / 3.0), 1e-13);
+  EXPECT_NEAR(miss.sigma_m[1], std::sqrt(8.0 / 3.0), 1e-13);
+  EXPECT_NEAR(miss.angle_rad, std::atan2(0.8, 0.6), 1e-14);
+  EXPECT_FALSE(miss.r95_m.upper) << "four cases do not bound it";
+  EXPECT_FALSE(miss.cep_m.estimate);
+}
+
+TEST(Miss, IsFoundByItsThreeComponents) {
+  Campaign campaign;
+  campaign.cases.resize(4);
+  for (Case& one : campaign.cases) one.state = State::kComplete;
+  campaign.cases[1].state = State::kFailed;
+  campaign.figures = {{"waypoints.9.control_error_r_m", {1, 2, 3, 4}},
+                      {"waypoints.9.control_error_t_m", {1, 2, 3, std::nan("")}},
+                      {"waypoints.9.control_error_n_m", {5, 6, 7, 8}},
+                      {"samples.1h.sigma_r_m", {1, 1, 1, 1}},
+                      {"waypoints.10.control_error_r_m", {1, 2, 3, 4}}};
+  const std::vector<VectorError> found = vector_errors(campaign);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].key, "waypoints.9.control_error");
+  ASSERT_EQ(found[0].errors_rtn_m.size(), 2U) << "neither failed cases nor those without a component";
+  EXPECT_EQ(found[0].errors_rtn_m[1][2], 7.0);
+}
+
+}  // namespace
+
 }  // namespace vbar::campaign_report::test

@@ -1,13 +1,12 @@
-#include "host_sim/campaign_report/read_campaign.h"
-
 #include <cmath>
 #include <stdexcept>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "host_sim/campaign_report/campaign.h"
 #include "tests/unit/host_sim/campaign_report/synthetic_campaign.h"
-#include "tests/unit/host_sim/report/scratch_folder.h"
+#include "tests/unit/host_sim/report/synthetic_run.h"
 
 namespace vbar::campaign_report::test {
 namespace {

@@ -4,12 +4,14 @@
 #include <fstream>
 
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "host_sim/files/sha256.h"
+#include "host_sim/files/output_file.h"
 #include "tests/support/paths.h"
 
 namespace vbar::files {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -89,4 +91,66 @@ TEST(DataChecksums, AreThoseOfTheFiles) {
 }
 
 }  // namespace
+
+namespace {
+
+// FIPS 180-4, examples of one block and of none.
+constexpr const char* kOfAbc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+constexpr const char* kOfNothing = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855";
+
+TEST(Sha256, AgreesWithTheStandardsExamples) {
+  EXPECT_EQ(sha256_of("abc"), kOfAbc);
+  EXPECT_EQ(sha256_of(""), kOfNothing);
+  Sha256 parts;
+  parts.add(std::string_view("a"));
+  static_cast<void>(parts.hexadecimal());
+  parts.add(std::string_view("bc"));
+  EXPECT_EQ(parts.hexadecimal(), kOfAbc);
+}
+
+TEST(Sha256, OfAFile) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "vbar_sha256_test";
+  std::ofstream(file) << "abc";
+  EXPECT_EQ(sha256_of_file(file), kOfAbc);
+  std::filesystem::remove(file);
+  EXPECT_FALSE(sha256_of_file(file));
+  EXPECT_FALSE(sha256_of_file(testing::TempDir()));
+}
+
+}  // namespace
+
+// A link in a folder never directs a removal to its target.
+
+namespace {
+
+class RemoveLink : public testing::Test {
+ protected:
+  RemoveLink() : folder_(fs::path(testing::TempDir()) / ("vbar_link_" + std::to_string(::getpid()))) {
+    fs::create_directories(folder_ / "target");
+    std::ofstream(folder_ / "target/file") << "content";
+  }
+  ~RemoveLink() override { fs::remove_all(folder_); }
+  fs::path folder_;
+};
+
+TEST_F(RemoveLink, TakesTheLinkAndLeavesItsTarget) {
+  fs::create_directory_symlink("target", folder_ / "to_folder");
+  fs::create_symlink("target/file", folder_ / "to_file");
+  fs::create_symlink("nothing", folder_ / "dangling");
+  for (const char* link : {"to_folder", "to_file", "dangling"}) {
+    remove_link(folder_ / link);
+    EXPECT_FALSE(fs::exists(fs::symlink_status(folder_ / link))) << link;
+  }
+  EXPECT_EQ(fs::file_size(folder_ / "target/file"), 7U);
+}
+
+TEST_F(RemoveLink, LeavesWhatIsNoLink) {
+  remove_link(folder_ / "target");
+  remove_link(folder_ / "target/file");
+  remove_link(folder_ / "nothing");
+  EXPECT_TRUE(fs::exists(folder_ / "target/file"));
+}
+
+}  // namespace
+
 }  // namespace vbar::files

@@ -15,7 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "host_sim/io/byte_channels.h"
+#include "host_sim/io/byte_channel.h"
 
 namespace vbar::io {
 namespace {

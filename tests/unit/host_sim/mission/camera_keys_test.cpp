@@ -7,8 +7,8 @@
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/packets/messages.h"
-#include "host_sim/sensors/camera/camera_file.h"
-#include "host_sim/sensors/navigation_telecommands.h"
+#include "host_sim/installation/navigation_telecommands.h"
+#include "host_sim/sensors/settings/camera_file.h"
 #include "tests/support/paths.h"
 #include "tests/unit/host_sim/mission/mission_text.h"
 

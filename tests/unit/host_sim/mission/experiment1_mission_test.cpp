@@ -16,13 +16,12 @@
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/rtn.h"
 #include "host_sim/mission/body_file.h"
-#include "host_sim/mission/extends.h"
+#include "host_sim/mission/mission_document.h"
 #include "host_sim/truth/earth/earth_rotation.h"
 #include "host_sim/truth/earth/sun_moon.h"
 #include "tests/support/figures.h"
 #include "tests/support/paths.h"
 #include "tests/unit/host_sim/mission/mission_text.h"
-#include "tests/unit/host_sim/mission/shown_keys.h"
 
 namespace vbar::mission::test {
 namespace {

@@ -1,11 +1,17 @@
 // [[fault]]: what is read, and what the mission cannot apply.
 
+#include <array>
+#include <fstream>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "fsw/packets/messages.h"
+#include "host_sim/mission/mission.h"
 #include "tests/unit/host_sim/mission/mission_text.h"
 
 namespace vbar::mission::test {
+
 namespace {
 
 const std::string kBase(kSmallMission);
@@ -144,4 +150,104 @@ TEST(FaultKeys, WhatTheMissionCannotApplyIsRefused) {
 }
 
 }  // namespace
+
+// [[limit]]: what is read, what is refused, and that nothing else of a mission is needed to read it.
+
+namespace {
+
+std::string with_limits(const std::string& tables) {
+  return std::string(kSmallMission) + tables;
+}
+
+TEST(LimitKeys, AreReadInTheOrderOfTheFile) {
+  const auto limits = parse_mission(with_limits("[[limit]]\nkey = \"dv_mps\"\nmost = 4.2\n"
+                                                "[[limit]]\nkey = \"waypoints.10.nees\"\nleast = 0.5\nmost = 7.8\n"),
+                                    "m.toml")
+                          .limits;
+  ASSERT_EQ(limits.size(), 2U);
+  EXPECT_EQ(limits[0].key, "dv_mps");
+  EXPECT_EQ(limits[0].most, 4.2);
+  EXPECT_FALSE(limits[0].least);
+  EXPECT_EQ(limits[1].least, 0.5);
+  EXPECT_TRUE(parse_mission(std::string(kSmallMission), "m.toml").limits.empty());
+}
+
+TEST(LimitKeys, RefuseALimitThatCannotBeMetOrSaysNothing) {
+  const auto refusal = [](const std::string& tables) { return message_of(with_limits(tables)); };
+  EXPECT_THAT(refusal("[[limit]]\nkey = \"a\"\n"), testing::HasSubstr("neither most nor least"));
+  EXPECT_THAT(refusal("[[limit]]\nmost = 1\n"), testing::HasSubstr("limit.0.key"));
+  EXPECT_THAT(refusal("[[limit]]\nkey = \"a\"\nmost = 1\nleast = 2\n"), testing::HasSubstr("limit.0.least"));
+  EXPECT_THAT(refusal("[[limit]]\nkey = \"a\"\nmost = nan\n"), testing::HasSubstr("limit.0.most"));
+  EXPECT_THAT(refusal("[[limit]]\nkey = \"a\"\nmost = 1\nmax = 1\n"), testing::HasSubstr("max"));
+  EXPECT_THAT(refusal("[[limit]]\nkey = \"a\"\nmost = 1\n[[limit]]\nkey = \"a\"\nleast = 0\n"),
+              testing::HasSubstr("limit.1.key"));
+}
+
+TEST(LimitKeys, OfAFileAloneNeedNothingElseOfTheMission) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "vbar_limits_only.toml";
+  std::ofstream(file) << "[[limit]]\nkey = \"dv_mps\"\nmost = 4.2\n";
+  const std::array<std::string, 1> overrides{"limit=[{key=\"dv_mps\", most=1.0}]"};
+  EXPECT_EQ(load_limits(file, {}).at(0).most, 4.2);
+  EXPECT_EQ(load_limits(file, overrides).at(0).most, 1.0);
+  std::filesystem::remove(file);
+}
+
+}  // namespace
+
+namespace {
+
+TEST(Telecommands, WaypointTableCarriesTheMissionsWaypoints) {
+  const Mission mission = small_mission({"waypoint.1.solver=koenig_damico"});
+  const vbar::waypoint_table table = waypoint_table_of(mission);
+  ASSERT_EQ(table.count, 2);
+  EXPECT_DOUBLE_EQ(table.reference_semi_major_axis_m, 7078138.944);
+  EXPECT_EQ(table.waypoints[1].index, 1);
+  EXPECT_EQ(table.waypoints[1].control_mode, 1);
+  EXPECT_EQ(table.waypoints[1].gps_time_ns, mission.epoch.ns + 7200 * std::int64_t{1000000000});
+  EXPECT_EQ(table.waypoints[1].a_roe_m[1], -600.0);
+  EXPECT_EQ(table.waypoints[1].a_roe_m[5], 18.0);
+}
+
+TEST(Telecommands, ConfigurationIsInTheUnitsOfThePacketContract) {
+  const Mission mission = small_mission(
+      {"mission.start_h=1", "guidance.planner_delay_s=1200", "guidance.dv_min_mmps=0.25", "guidance.dv_max_mps=3",
+       "guidance.compute_latency_s=1.5", "guidance.closed_form_period_s=301", "guidance.koenig_damico_period_s=61",
+       "guidance.koenig_damico_grid_s=31", "guidance.roe_error_threshold_m=0.4", "guidance.keep_out_radius_m=0.6",
+       "guidance.safety_horizon_s=6001", "guidance.station_keeping_deadband_m=0.7",
+       "guidance.closed_form_tolerance_m=0.8", "guidance.koenig_damico_tolerance_m=0.009",
+       "guidance.station_keeping_horizon_s=6003", "guidance.navigation_timeout_s=602"});
+  const vbar::gnc_configuration configuration = mission.guidance.configuration;
+  constexpr std::int64_t kSecond = 1000000000;
+  EXPECT_EQ(configuration.compute_latency_ns, 3 * kSecond / 2);
+  EXPECT_EQ(configuration.closed_form_period_ns, 301 * kSecond);
+  EXPECT_EQ(configuration.koenig_damico_period_ns, 61 * kSecond);
+  EXPECT_EQ(configuration.koenig_damico_grid_ns, 31 * kSecond);
+  EXPECT_EQ(configuration.planner_start_ns, mission.epoch.ns + (3600 + 1200) * kSecond);
+  EXPECT_DOUBLE_EQ(configuration.minimum_dv, 0.25e-3);
+  EXPECT_EQ(configuration.maximum_dv, 3.0);
+  EXPECT_EQ(configuration.roe_error_threshold_m, 0.4);
+  EXPECT_EQ(configuration.keep_out_radius_m, 0.6);
+  EXPECT_EQ(configuration.safety_horizon_s, 6001.0);
+  EXPECT_EQ(configuration.station_keeping_deadband_m, 0.7);
+  EXPECT_EQ(configuration.closed_form_tolerance_m, 0.8);
+  EXPECT_EQ(configuration.koenig_damico_tolerance_m, 0.009);
+  EXPECT_EQ(configuration.station_keeping_horizon_s, 6003.0);
+  EXPECT_EQ(configuration.navigation_timeout_s, 602.0);
+}
+
+TEST(Telecommands, ModeIsTheContractsNumber) {
+  EXPECT_EQ(mode_command_of(small_mission()).mode, 1);
+  EXPECT_EQ(mode_command_of(small_mission({"guidance.mode=hold"})).mode, 3);
+}
+
+TEST(Telecommands, ArePackets) {
+  const Mission mission = small_mission();
+  std::array<std::uint8_t, fsw::packets::kMaxPacketBytes> buffer{};
+  EXPECT_TRUE(fsw::packets::encode({}, waypoint_table_of(mission), buffer).ok());
+  EXPECT_TRUE(fsw::packets::encode({}, mission.guidance.configuration, buffer).ok());
+  EXPECT_TRUE(fsw::packets::encode({}, mode_command_of(mission), buffer).ok());
+}
+
+}  // namespace
+
 }  // namespace vbar::mission::test

@@ -1,8 +1,6 @@
 // Interpolated states are those of the orbit to within the bound that is stated, or the file is refused. The orbit is a
 // circular Keplerian one, and the remainder of a polynomial through its states is known: f^(m) is (n^m) r.
 
-#include "host_sim/orbit_files/interpolation.h"
-
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -10,6 +8,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "host_sim/orbit_files/orbit_file.h"
 
 namespace vbar::orbit_files {
 namespace {

@@ -1,4 +1,4 @@
-#include "host_sim/report/html_report.h"
+#include "host_sim/report/sections/html_report.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,13 +7,10 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include "host_sim/report/compare_report.h"
 #include "host_sim/report/run_folder.h"
 #include "host_sim/sensors/camera/camera_rows.h"
-#include "host_sim/sensors/gnss/gnss_row.h"
+#include "host_sim/sensors/gnss/gnss_rows.h"
 #include "tests/support/paths.h"
-#include "tests/unit/host_sim/report/program_output.h"
-#include "tests/unit/host_sim/report/scratch_folder.h"
 #include "tests/unit/host_sim/report/synthetic_run.h"
 
 namespace vbar::report::test {

@@ -7,13 +7,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "host_sim/report/consistency.h"
-#include "host_sim/report/number_text.h"
-#include "host_sim/report/svg_plot.h"
-#include "host_sim/report/timeline.h"
+#include "host_sim/report/plots/number_text.h"
+#include "host_sim/report/plots/svg_plot.h"
+#include "host_sim/report/run_series.h"
+#include "host_sim/report/statistics.h"
 #include "tests/support/figures.h"
+#include "tests/unit/host_sim/report/synthetic_run.h"
 
 namespace vbar::report::test {
+
 namespace {
 
 constexpr double kSearchStep = 0.1;  // pixels
@@ -356,4 +358,43 @@ TEST(Consistency, SetsOffMeansOutsideTheirBand) {
 }
 
 }  // namespace
+
+namespace {
+
+// The paper calls waypoints 0 to 4 far range, 5 to 7 mid range and 8 to 10 close range.
+TEST(MissionViews, SplitThePapersMissionAsThePaperDoes) {
+  const std::vector<View> views = mission_views(synthetic_run());
+  ASSERT_EQ(views.size(), 3U);
+  EXPECT_EQ(views[0].name, "waypoints 0 to 4");
+  EXPECT_EQ(views[1].name, "waypoints 4 to 8");
+  EXPECT_EQ(views[2].name, "waypoints 8 to 10");
+  EXPECT_EQ(views[0].start_s, 0.0);
+  EXPECT_EQ(views[1].start_s, views[0].end_s);
+  EXPECT_EQ(views[2].start_s, 39.0 * 3600.0);
+  EXPECT_EQ(views[2].end_s, 41.25 * 3600.0);
+}
+
+TEST(MissionViews, CloseRangeAloneIsOneView) {
+  RunRecord record = synthetic_run();
+  record.waypoints.erase(record.waypoints.begin(), record.waypoints.begin() + 8);
+  const std::vector<View> views = mission_views(record);
+  ASSERT_EQ(views.size(), 1U);
+  EXPECT_EQ(views.front().waypoints.size(), 3U);
+}
+
+TEST(MissionViews, ARunWithoutWaypointsIsSeenWhole) {
+  RunRecord record = synthetic_run();
+  record.waypoints.clear();
+  const std::vector<View> views = mission_views(record);
+  ASSERT_EQ(views.size(), 1U);
+  EXPECT_EQ(views.front().name, "whole run");
+  EXPECT_EQ(views.front().end_s, record.truth.back().time_s);
+}
+
+TEST(MissionViews, ARunWithoutAnyStepHasAView) {
+  EXPECT_EQ(mission_views({}).size(), 1U);
+}
+
+}  // namespace
+
 }  // namespace vbar::report::test

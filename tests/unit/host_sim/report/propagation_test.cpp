@@ -10,10 +10,9 @@
 
 #include "host_sim/report/csv_table.h"
 #include "host_sim/report/propagation_folder.h"
-#include "host_sim/report/propagation_summary.h"
 #include "host_sim/truth/earth/time_scales.h"
 #include "tests/support/figures.h"
-#include "tests/unit/host_sim/report/scratch_folder.h"
+#include "tests/unit/host_sim/report/synthetic_run.h"
 
 namespace vbar::report::test {
 namespace {

@@ -11,12 +11,11 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "host_sim/files/output_file.h"
+#include "host_sim/installation/sensor_kinds.h"
 #include "host_sim/report/summary_json.h"
-#include "host_sim/report/text_file.h"
 #include "host_sim/sensors/camera/camera_rows.h"
-#include "host_sim/sensors/gnss/gnss_row.h"
-#include "host_sim/sensors/sensor_kinds.h"
-#include "tests/unit/host_sim/report/scratch_folder.h"
+#include "host_sim/sensors/gnss/gnss_rows.h"
 #include "tests/unit/host_sim/report/synthetic_run.h"
 
 namespace vbar::report::test {

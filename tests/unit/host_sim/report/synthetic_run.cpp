@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "host_sim/sensors/sensor_kinds.h"
+#include "host_sim/installation/sensor_kinds.h"
 
 namespace vbar::report::test {
 namespace {

@@ -10,10 +10,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "host_sim/report/html_report.h"
+#include "host_sim/report/sections/html_report.h"
+#include "host_sim/report/statistics.h"
 #include "host_sim/report/summarise.h"
-#include "host_sim/report/thrust.h"
-#include "host_sim/report/true_distance.h"
 
 namespace vbar::report::test {
 namespace {

@@ -16,9 +16,9 @@ namespace vbar::sensors {
 namespace {
 
 using fsw::Vector3;
+using fsw::gnss::DifferentialEpoch;
+using fsw::gnss::DifferentialObservation;
 using fsw::gnss::Signal;
-using fsw::navigation::DifferentialEpoch;
-using fsw::navigation::DifferentialObservation;
 
 constexpr int kSatellites = 12;
 constexpr std::array<Signal, 2> kSignals{Signal::kGpsL1, Signal::kGpsL2};

@@ -8,8 +8,8 @@
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
-#include "host_sim/sensors/gnss/gnss_row.h"
-#include "tests/unit/host_sim/report/relative_rows.h"
+#include "host_sim/sensors/gnss/gnss_rows.h"
+#include "tests/unit/host_sim/report/synthetic_run.h"
 
 namespace vbar::sensors::test {
 namespace {

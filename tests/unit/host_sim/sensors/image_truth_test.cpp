@@ -1,19 +1,19 @@
 // Telemetry of an image against a truth that can be worked out by hand: camera axes along ECI, target straight ahead.
 
-#include "host_sim/sensors/camera/image_truth.h"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/sun.h"
+#include "host_sim/installation/sensor_kinds.h"
 #include "host_sim/report/summarise.h"
-#include "host_sim/sensors/camera/image_rows.h"
-#include "host_sim/sensors/sensor_kinds.h"
+#include "host_sim/sensors/camera/camera_rows.h"
+#include "host_sim/sensors/camera/camera_truth.h"
 #include "tests/unit/host_sim/sensors/editable_camera.h"
 
 namespace vbar::sensors {
+
 namespace {
 
 using fsw::Vector3;
@@ -338,4 +338,44 @@ TEST(ImageRows, ResidualsAndObjectsAreRows) {
 }
 
 }  // namespace
+
+namespace {
+
+twins::TruthSnapshot truth_at(std::int64_t s) {
+  twins::TruthSnapshot truth;
+  truth.time = fsw::GpsTime{} + fsw::duration_of_seconds(s);
+  truth.spacecraft.resize(1);
+  truth.spacecraft[0].name = std::to_string(s);
+  return truth;
+}
+
+TEST(TruthRecorder, IsKeptUntilTakenHoweverManyFollow) {
+  TruthRecorder kept;
+  for (std::int64_t s = 0; s < 1000; ++s) kept.keep(truth_at(s));
+  const auto truth = kept.take(truth_at(0).time);
+  ASSERT_TRUE(truth);
+  EXPECT_EQ(truth->spacecraft[0].name, "0");
+  EXPECT_EQ(kept.size(), 999U) << "released";
+  EXPECT_EQ(kept.without_truth(), 0);
+}
+
+TEST(TruthRecorder, TwoCamerasMayExposeAtTheSameTime) {
+  TruthRecorder kept;
+  kept.keep(truth_at(1));
+  kept.keep(truth_at(1));
+  EXPECT_TRUE(kept.take(truth_at(1).time));
+  EXPECT_TRUE(kept.take(truth_at(1).time));
+}
+
+TEST(TruthRecorder, CountsImagesWithout) {
+  TruthRecorder kept;
+  kept.keep(truth_at(1));
+  EXPECT_FALSE(kept.take(truth_at(2).time));
+  EXPECT_TRUE(kept.take(truth_at(1).time));
+  EXPECT_FALSE(kept.take(truth_at(1).time)) << "told of twice";
+  EXPECT_EQ(kept.without_truth(), 2);
+}
+
+}  // namespace
+
 }  // namespace vbar::sensors

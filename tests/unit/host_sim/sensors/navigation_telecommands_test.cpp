@@ -1,15 +1,15 @@
 // Which telecommands of navigation a mission sends: sources by its sensors, one packet per property, the unit of each
 // camera; and what the flight software says of each camera's images goes to that camera.
 
-#include "host_sim/sensors/navigation_telecommands.h"
+#include "host_sim/installation/navigation_telecommands.h"
 
 #include <map>
 
 #include <gmock/gmock.h>
 
+#include "host_sim/installation/sensor_kinds.h"
 #include "host_sim/sensors/camera/camera_kind.h"
 #include "host_sim/sensors/camera/camera_rows.h"
-#include "host_sim/sensors/sensor_kinds.h"
 #include "host_sim/twins/packet_encoder.h"
 #include "tests/support/paths.h"
 #include "tests/unit/host_sim/mission/mission_text.h"

@@ -1,16 +1,15 @@
 // Telemetry of a pose against a truth that can be worked out by hand: camera axes along ECI, the target straight ahead
 // or at a place whose pixel OpenCV gives.
 
-#include "host_sim/sensors/camera/pose_truth.h"
-
 #include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
 
 #include "fsw/orbit/roe.h"
+#include "host_sim/installation/sensor_kinds.h"
 #include "host_sim/report/summarise.h"
-#include "host_sim/sensors/sensor_kinds.h"
+#include "host_sim/sensors/camera/camera_truth.h"
 #include "tests/unit/host_sim/sensors/editable_camera.h"
 
 namespace vbar::sensors {

@@ -7,11 +7,11 @@
 #include <gmock/gmock.h>
 
 #include "fsw/packets/messages.h"
-#include "host_sim/report/html_report.h"
+#include "host_sim/installation/sensor_kinds.h"
 #include "host_sim/report/run_tables.h"
+#include "host_sim/report/sections/html_report.h"
 #include "host_sim/report/summarise.h"
 #include "host_sim/sensors/range_finder/range_finder_kind.h"
-#include "host_sim/sensors/sensor_kinds.h"
 #include "tests/unit/host_sim/mission/mission_text.h"
 
 namespace vbar::sensors {

@@ -11,12 +11,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "host_sim/truth/forces/radiation_pressure_force.h"
-#include "host_sim/truth/forces/third_body_force.h"
+#include "host_sim/truth/forces/gravitation.h"
+#include "host_sim/truth/forces/radiation_pressure.h"
 #include "host_sim/truth/spacecraft_propagator.h"
 #include "tests/support/accuracy.h"
-#include "tests/unit/host_sim/truth/cowell.h"
-#include "tests/unit/host_sim/truth/forces_fixture.h"
+#include "tests/unit/host_sim/truth/truth_fixtures.h"
 
 namespace vbar::truth {
 namespace {

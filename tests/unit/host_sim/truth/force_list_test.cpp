@@ -15,7 +15,7 @@
 
 #include "host_sim/truth/atmosphere/nrlmsise00.h"
 #include "host_sim/truth/forces/gravity_coefficients.h"
-#include "tests/unit/host_sim/truth/all_forces.h"
+#include "tests/unit/host_sim/truth/truth_fixtures.h"
 
 namespace vbar::truth {
 namespace {

@@ -10,13 +10,11 @@
 #include <gtest/gtest.h>
 
 #include "host_sim/truth/force_list.h"
-#include "host_sim/truth/forces/gravity_force.h"
+#include "host_sim/truth/forces/gravitation.h"
 #include "host_sim/truth/spacecraft_propagator.h"
 #include "host_sim/truth/truth_model.h"
 #include "tests/support/accuracy.h"
-#include "tests/unit/host_sim/truth/cowell.h"
-#include "tests/unit/host_sim/truth/forces_fixture.h"
-#include "tests/unit/host_sim/truth/truth_fixture.h"
+#include "tests/unit/host_sim/truth/truth_fixtures.h"
 
 namespace vbar::truth {
 namespace {

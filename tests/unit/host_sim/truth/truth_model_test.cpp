@@ -8,12 +8,15 @@
 #include <vector>
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/host_sim/truth/truth_fixture.h"
+#include "tests/support/accuracy.h"
+#include "tests/unit/host_sim/truth/truth_fixtures.h"
 
 namespace vbar::truth {
+
 namespace {
 
 using fsw::Vector3;
@@ -263,4 +266,84 @@ TEST(TruthModel, DoesNotGoBackOrBeyondItsData) {
 }
 
 }  // namespace
+
+// One, two or fifty spacecraft under all forces, on any number of threads, asked for at any times: the same bits.
+
+namespace {
+
+constexpr std::int64_t kFlight_s =
+    5400;  // most of a revolution, with the shadow's edges and a three-hourly jump (3h UTC)
+
+/// Spacecraft all around the orbit, each with its own mass.
+std::vector<CartesianState> fly(int count, int threads, std::int64_t every_s) {
+  TruthSettings settings = test::all_forces_settings();
+  settings.epoch = gps_from_utc("2011-07-18T02:00:00Z");
+  settings.gravity_degree = settings.gravity_order = 20;
+  settings.tolerance = 1e-10;
+  settings.threads = threads;
+  TruthModel model(settings);
+  for (int k = 0; k < count; ++k) {
+    SpacecraftSettings spacecraft = test::mango("s" + std::to_string(k), 8e5 * k);
+    spacecraft.surface.mass_kg += k;
+    model.add_spacecraft(spacecraft);
+  }
+  for (std::int64_t t = every_s; t <= kFlight_s; t += every_s) {
+    model.advance_to(settings.epoch + fsw::duration_of_seconds(t));
+    static_cast<void>(model.accelerations(0));  // looking on changes nothing either
+  }
+  std::vector<CartesianState> states;
+  for (std::size_t k = 0; k < model.spacecraft_count(); ++k) states.push_back(model.state(k));
+  return states;
+}
+
+void expect_same(const std::vector<CartesianState>& a, const std::vector<CartesianState>& b, const std::string& what) {
+  ASSERT_LE(a.size(), b.size());
+  for (std::size_t k = 0; k < a.size(); ++k) EXPECT_TRUE(test::same_bits(a[k], b[k])) << what << ", spacecraft " << k;
+}
+
+TEST(Threads, AllForcesGiveTheSameBits) {
+  const std::vector<CartesianState> fifty = fly(50, 1, kFlight_s);
+  for (int threads = 2; threads <= 8; ++threads) {
+    expect_same(fly(50, threads, kFlight_s), fifty, std::to_string(threads) + " threads");
+  }
+  expect_same(fly(1, 1, kFlight_s), fifty, "alone");
+  for (int threads : {1, 2, 8}) expect_same(fly(2, threads, kFlight_s), fifty, "two of them");
+  expect_same(fly(50, 3, 300), fifty, "in pieces of five minutes");
+  expect_same(fly(2, 2, 60), fifty, "two in minutes");
+}
+
+}  // namespace
+
+// What a tolerance is worth: the error after a day in low orbit under all forces, for the tolerances that missions
+// choose.
+
+namespace {
+
+fsw::Vector3 position_after_a_day(double tolerance) {
+  TruthSettings settings = test::all_forces_settings();
+  settings.tolerance = tolerance;
+  TruthModel model(settings);
+  model.add_spacecraft(test::mango());
+  model.advance_to(settings.epoch + fsw::duration_of_seconds(86400));
+  return model.state(0).position_eci;
+}
+
+TEST(DayError, AtEachTolerance) {
+  const fsw::Vector3 reference = position_after_a_day(TruthSettings::kSmallestTolerance);
+  struct Row {
+    double tolerance;
+    double limit_m;
+  };
+  // An error of the semi-major axis in one step drifts along the track for the rest of the day, 137 times its size, and
+  // the steps' errors add up like a random walk: between neighbouring force models the day's error scatters by a factor
+  // of three. The limits are an order above what was found; the claim that the benchmark of a day uses is 1 m at 1e-11.
+  for (const Row& row : {Row{1e-9, 100.0}, Row{1e-10, 5.0}, Row{1e-11, 1.0}, Row{1e-12, 1e-2}}) {
+    accuracy::expect_below(
+        fmt::format("a day in low orbit, 60x60 and all forces, tolerance {:.0e}: position", row.tolerance),
+        "the same at a tolerance of 1e-14", (position_after_a_day(row.tolerance) - reference).norm(), row.limit_m, "m");
+  }
+}
+
+}  // namespace
+
 }  // namespace vbar::truth

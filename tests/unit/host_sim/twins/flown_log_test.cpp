@@ -1,10 +1,9 @@
-#include "host_sim/twins/flown_log.h"
-
 #include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
 
+#include "host_sim/twins/run_log.h"
 #include "tests/unit/host_sim/twins/log_file.h"
 
 namespace vbar::twins::test {
@@ -44,7 +43,7 @@ class FlownLogFile : public LogFile {
   void write(const std::string& bytes) { std::ofstream(file_, std::ios::binary | std::ios::trunc) << bytes; }
 
   /// Flies `steps` along the log.
-  static void compare(FlownLog& log, int steps, int odd = -1) {
+  static void compare(RunLog& log, int steps, int odd = -1) {
     for (int step = 0; step < steps; ++step)
       for (const PacketRecord& record : records_of(static_cast<std::uint32_t>(step), odd))
         for (const LcmEvent& event : lcm_events_of(record)) log.compare(record.time, event);
@@ -53,7 +52,7 @@ class FlownLogFile : public LogFile {
 
 TEST_F(FlownLogFile, TheSameFlightIsIdentical) {
   fly();
-  FlownLog log(file_);
+  RunLog log(file_);
   EXPECT_EQ(log.events(), kSteps * kEventsOfStep);
   EXPECT_EQ(log.steps(), kSteps);
   EXPECT_EQ(log.time(), time_of(kSteps - 1));
@@ -62,14 +61,14 @@ TEST_F(FlownLogFile, TheSameFlightIsIdentical) {
   compare(log, kSteps - 1);
   EXPECT_FALSE(log.is_over());
   compare(log, 0);
-  FlownLog again(file_);
+  RunLog again(file_);
   compare(again, kSteps + 2);  // goes on
   EXPECT_TRUE(again.is_over());
 }
 
 TEST_F(FlownLogFile, TheEndIsNotPartOfTheFlight) {
   fly(kSteps, true);
-  FlownLog log(file_);
+  RunLog log(file_);
   EXPECT_TRUE(log.has_end());
   EXPECT_EQ(log.events(), kSteps * kEventsOfStep);
   compare(log, kSteps);
@@ -78,16 +77,16 @@ TEST_F(FlownLogFile, TheEndIsNotPartOfTheFlight) {
 
 TEST_F(FlownLogFile, AnEmptyLogIsOver) {
   write("");
-  EXPECT_TRUE(FlownLog(file_).is_over());
+  EXPECT_TRUE(RunLog(file_).is_over());
 }
 
 TEST_F(FlownLogFile, AnotherAnswerIsNamedWithItsStep) {
   fly();
-  FlownLog log(file_);
+  RunLog log(file_);
   try {
     compare(log, kSteps, 2);
     FAIL() << "the answer of step 2 differs";
-  } catch (const FlownOtherwise& error) {
+  } catch (const RunDiffers& error) {
     EXPECT_THAT(error.what(), HasSubstr("step 2, packet telemetry_health from the flight software: differs from byte"));
     EXPECT_EQ(error.time(), time_of(2));
   }
@@ -95,12 +94,12 @@ TEST_F(FlownLogFile, AnotherAnswerIsNamedWithItsStep) {
 
 TEST_F(FlownLogFile, APacketOfAnotherKindIsNamedBesideThatOfTheLog) {
   fly();
-  FlownLog log(file_);
+  RunLog log(file_);
   const auto events = lcm_events_of(records_of(0).back());
   try {
     log.compare(time_of(0), events.front());
     FAIL() << "the tick is missing";
-  } catch (const FlownOtherwise& error) {
+  } catch (const RunDiffers& error) {
     EXPECT_THAT(error.what(),
                 HasSubstr("telemetry_health from the flight software, where the log has step 0, packet tick"));
   }
@@ -108,13 +107,13 @@ TEST_F(FlownLogFile, APacketOfAnotherKindIsNamedBesideThatOfTheLog) {
 
 TEST_F(FlownLogFile, BranchesAreComparedUntilTheyLeave) {
   fly();
-  FlownLog log(file_);
+  RunLog log(file_);
   log.compare_before(time_of(2));
   compare(log, kSteps, 2);
   EXPECT_TRUE(log.is_over());
-  FlownLog earlier(file_);
+  RunLog earlier(file_);
   earlier.compare_before(time_of(2));
-  EXPECT_THROW(compare(earlier, kSteps, 1), FlownOtherwise);
+  EXPECT_THROW(compare(earlier, kSteps, 1), RunDiffers);
 }
 
 TEST_F(FlownLogFile, CutAtAnyByteItCountsUntilThere) {
@@ -122,7 +121,7 @@ TEST_F(FlownLogFile, CutAtAnyByteItCountsUntilThere) {
   const std::string bytes = content();
   for (std::size_t size = 5; size < bytes.size(); size += 11) {
     write(bytes.substr(0, size));
-    FlownLog log(file_);
+    RunLog log(file_);
     EXPECT_LT(log.events(), kSteps * kEventsOfStep);
     compare(log, kSteps);
     EXPECT_TRUE(log.is_over()) << size;
@@ -137,15 +136,15 @@ TEST_F(FlownLogFile, ItsLastEventMayBeDamagedOrZero) {
     std::string damaged = bytes;
     damaged[at] = static_cast<char>(damaged[at] ^ 0x10);
     write(damaged);
-    FlownLog log(file_);
+    RunLog log(file_);
     EXPECT_EQ(log.events(), kSteps * kEventsOfStep - 1) << at - last;
     EXPECT_EQ(log.damaged_from(), last);
     compare(log, kSteps);
     EXPECT_TRUE(log.is_over());
   }
   write(bytes + std::string(5000, '\0'));  // as a file system may leave it after a loss of power
-  EXPECT_EQ(FlownLog(file_).events(), kSteps * kEventsOfStep);
-  EXPECT_EQ(FlownLog(file_).damaged_from(), bytes.size());
+  EXPECT_EQ(RunLog(file_).events(), kSteps * kEventsOfStep);
+  EXPECT_EQ(RunLog(file_).damaged_from(), bytes.size());
 }
 
 // Every byte of the log: a change of it is found when the log is read, or when it is compared, and never goes
@@ -160,7 +159,7 @@ TEST_F(FlownLogFile, AnyChangedByteInTheMiddleIsFound) {
     write(damaged);
     EXPECT_THROW(
         {
-          FlownLog log(file_);
+          RunLog log(file_);
           compare(log, kSteps);
         },
         std::runtime_error)
@@ -173,23 +172,23 @@ TEST_F(FlownLogFile, MissingRecordsAreNamed) {
   const std::string bytes = content();
   const std::size_t second = bytes.find(kSync, 4);
   write(bytes.substr(second));
-  EXPECT_THROW(FlownLog{file_}, ThinnedLog);
+  EXPECT_THROW(RunLog{file_}, IncompleteLog);
   {
     PacketLogWriter writer(file_);  // numbered from the beginning, without step 1
     for (const std::uint32_t step : {0U, 2U, 3U})
       for (const PacketRecord& record : records_of(step)) writer.write(record);
   }
   try {
-    FlownLog log(file_);
+    RunLog log(file_);
     FAIL() << "step 1 is missing";
-  } catch (const ThinnedLog& error) {
+  } catch (const IncompleteLog& error) {
     EXPECT_THAT(error.what(), HasSubstr("of step 1"));
   }
 }
 
 TEST_F(FlownLogFile, AFileThatIsNoLogIsRefused) {
   write("[mission]\n");
-  EXPECT_THROW(FlownLog{file_}, DamagedLog);
+  EXPECT_THROW(RunLog{file_}, DamagedLog);
 }
 
 }  // namespace

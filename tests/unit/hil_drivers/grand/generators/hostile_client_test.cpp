@@ -6,9 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "hil_drivers/grand/wire/skydel_control.h"
-#include "hil_drivers/grand/wire/skydel_hil.h"
-#include "host_sim/io/byte_channels.h"
+#include "hil_drivers/grand/wire/skydel.h"
+#include "host_sim/io/byte_channel.h"
 #include "host_sim/io/udp_socket.h"
 #include "tests/unit/hil_drivers/grand/generators/loopback.h"
 

@@ -14,7 +14,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <gtest/gtest.h>
 
-#include "hil_drivers/grand/bench/control/control_servers.h"
+#include "emulators/grand/control/control_servers.h"
 #include "hil_drivers/grand/generators/generator.h"
 
 namespace vbar::grand::test {

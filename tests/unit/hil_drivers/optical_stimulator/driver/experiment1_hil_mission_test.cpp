@@ -5,13 +5,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "hil_drivers/optical_stimulator/settings.h"
+#include "hil_drivers/optical_stimulator/stimulator_run.h"
+#include "host_sim/installation/sensor_kinds.h"
 #include "host_sim/sensors/camera/camera_kind.h"
 #include "host_sim/sensors/installed_testbeds.h"
-#include "host_sim/sensors/sensor_kinds.h"
 #include "tests/support/paths.h"
 #include "tests/unit/host_sim/mission/mission_text.h"
-#include "tests/unit/host_sim/mission/shown_keys.h"
 
 namespace vbar::mission::test {
 namespace {

@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "host_sim/truth/attitude/gravity_gradient_torque.h"
 #include "host_sim/truth/attitude/rigid_body.h"
-#include "tests/unit/host_sim/truth/attitude/circular_orbit.h"
+#include "host_sim/truth/attitude/torques.h"
+#include "tests/unit/host_sim/truth/truth_fixtures.h"
 
 namespace vbar::truth::test {
 namespace {

@@ -1,20 +1,149 @@
 #include "host_sim/truth/earth/earth_rotation.h"
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
 #include <memory>
 #include <random>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include <Eigen/LU>
+#include <GeographicLib/Geocentric.hpp>
 #include <erfa.h>
 #include <erfam.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include "host_sim/truth/earth/earth_orientation.h"
+#include "host_sim/truth/earth/time_scales.h"
 #include "tests/support/accuracy.h"
 #include "tests/unit/host_sim/truth/earth/iau2006_epochs.h"
-#include "tests/unit/host_sim/truth/truth_fixture.h"
+#include "tests/unit/host_sim/truth/truth_fixtures.h"
 
 namespace vbar::truth {
+
+namespace {
+
+constexpr double kArcsec = M_PI / 180.0 / 3600.0;
+
+EarthOrientationSeries real_series() {
+  return EarthOrientationSeries::load(test::kDataDirectory / "earth/eop_2009_2013.csv");
+}
+
+TEST(EarthOrientation, GivesTheIersValuesAtMidnight) {
+  // IERS EOP 14 C04, row of 2011-07-18 (MJD 55760): printed to 1e-6 arcsec and 1e-7 s.
+  const EarthOrientation o = real_series().at(gps_from_utc("2011-07-18T00:00:00Z"));
+  EXPECT_NEAR(o.pole_x / kArcsec, 0.076529, 1e-12);
+  EXPECT_NEAR(o.pole_y / kArcsec, 0.447250, 1e-12);
+  EXPECT_NEAR(o.ut1_minus_tai_s + 34.0, -0.2914350, 1e-12);
+  EXPECT_NEAR(o.cip_dx / kArcsec, -0.000176, 1e-12);
+  EXPECT_NEAR(o.cip_dy / kArcsec, 0.000104, 1e-12);
+}
+
+TEST(EarthOrientation, AgreesWithTheOtherServiceBetweenMidnights) {
+  // USNO finals2000A (Bulletin A final values), 2011-07-18 and 19, mean of the two days: the services agree to about
+  // 0.1 mas and 20 us, and UT1 bends by less than 0.1 ms over half a day.
+  const EarthOrientation o = real_series().at(gps_from_utc("2011-07-18T12:00:00Z"));
+  EXPECT_NEAR(o.pole_x / kArcsec, 0.5 * (0.076541 + 0.07869), 5e-4);
+  EXPECT_NEAR(o.pole_y / kArcsec, 0.5 * (0.447175 + 0.447627), 5e-4);
+  EXPECT_NEAR(o.ut1_minus_tai_s + 34.0, 0.5 * (-0.2914214 + -0.2915911), 1e-4);
+}
+
+TEST(EarthOrientation, Ut1RunsOnThroughALeapSecond) {
+  const EarthOrientationSeries series = real_series();
+  const fsw::GpsTime leap = gps_from_utc("2012-06-30T23:59:60Z");
+  const double before = series.at(leap, -1.0).ut1_minus_tai_s;
+  const double after = series.at(leap, 2.0).ut1_minus_tai_s;
+  // The length of day exceeds 86400 s by at most 2 ms in these years: 3 s of it are below 1e-7 s.
+  EXPECT_NEAR(after, before, 1e-7);
+}
+
+TEST(EarthOrientation, ReproducesACubicWhateverTheDay) {
+  // A Lagrange polynomial through four points is exact for cubics; 1e-9 is rounding of numbers up to 1e3.
+  constexpr int kFirstMjd = 56100;  // 56108 (2012-06-30) has a leap second
+  const auto seconds = [&](int mjd) { return 86400.0 * (mjd - kFirstMjd) + (mjd > 56108 ? 1.0 : 0.0); };
+  const auto cubic = [](double s) { return 3.0 - 2e-5 * s + 3e-11 * s * s + 4e-16 * s * s * s; };
+  std::vector<EarthOrientationSeries::Day> days;
+  for (int mjd = kFirstMjd; mjd < kFirstMjd + 20; ++mjd) {
+    const double value = cubic(seconds(mjd));
+    days.push_back({mjd, {value, 2.0 * value, 3.0 * value, 4.0 * value, 5.0 * value}});
+  }
+  const EarthOrientationSeries series(days);
+  const fsw::GpsTime start = gps_from_utc("2012-06-22T00:00:00Z");
+  for (double s = 0.0; s <= seconds(kFirstMjd + 19); s += 10007.0) {
+    const EarthOrientation o = series.at(start, s);
+    EXPECT_NEAR(o.ut1_minus_tai_s, cubic(s), 1e-9) << s;
+    EXPECT_NEAR(o.pole_x, 2.0 * cubic(s), 1e-9) << s;
+    EXPECT_NEAR(o.pole_y, 3.0 * cubic(s), 1e-9) << s;
+    EXPECT_NEAR(o.cip_dx, 4.0 * cubic(s), 1e-9) << s;
+    EXPECT_NEAR(o.cip_dy, 5.0 * cubic(s), 1e-9) << s;
+  }
+}
+
+TEST(EarthOrientation, RefusesDatesOutsideTheData) {
+  const EarthOrientationSeries series = real_series();
+  EXPECT_NO_THROW(series.at(gps_from_utc("2009-01-01T00:00:00Z")));
+  EXPECT_NO_THROW(series.at(gps_from_utc("2013-12-31T00:00:00Z")));
+  EXPECT_THROW(series.at(gps_from_utc("2008-12-31T23:59:59Z")), std::out_of_range);
+  EXPECT_THROW(series.at(gps_from_utc("2013-12-31T00:00:00Z"), 0.001), std::out_of_range);
+  EXPECT_THROW(series.at({0}, -1e300), std::out_of_range);
+  try {
+    static_cast<void>(series.at(gps_from_utc("2020-05-01T00:00:00Z")));
+    FAIL();
+  } catch (const std::out_of_range& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("2020-05-01T00:00:00Z"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("from 2009-01-01T00:00:00Z to 2013-12-31T00:00:00Z"));
+  }
+}
+
+class EarthOrientationFile : public testing::Test {
+ protected:
+  std::string message_for(const std::string& text) {
+    const auto path = std::filesystem::path(testing::TempDir()) / (std::to_string(::getpid()) + "_vbar_eop_test.csv");
+    std::ofstream(path) << text;
+    try {
+      static_cast<void>(EarthOrientationSeries::load(path));
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  const std::string header_ = "# comment\nmjd_utc,x_arcsec,y_arcsec,ut1_minus_utc_s,dx_arcsec,dy_arcsec\n";
+  const std::string rows_ = "55000,0,0,0,0,0\n55001,0,0,0,0,0\n55002,0,0,0,0,0\n55003,0,0,0,0,0\n";
+};
+
+TEST_F(EarthOrientationFile, IsReadWhenWhole) {
+  EXPECT_EQ(message_for(header_ + rows_), "");
+}
+
+TEST_F(EarthOrientationFile, ErrorsNameFileAndLine) {
+  using testing::HasSubstr;
+  EXPECT_THAT(message_for("a,b\n"),
+              HasSubstr("vbar_eop_test.csv:1: found \"a,b\", expected Earth orientation in one of the formats"));
+  EXPECT_THAT(message_for("mjd_utc,b\n"), HasSubstr(":1: found \"mjd_utc,b\", expected the columns"));
+  EXPECT_THAT(message_for(header_ + rows_ + "55005,0,0,0,0,0\n"), HasSubstr(":7: day 55005 follows day 55003"));
+  EXPECT_THAT(message_for(header_ + rows_ + "55004,0,0,0,0\n"),
+              HasSubstr(":7: found \"55004,0,0,0,0\", expected a whole MJD from 1980 to 2099 and 5 numbers"));
+  EXPECT_THAT(message_for(header_ + rows_ + "55004,0,0,0,0,0,0\n"),
+              HasSubstr("expected a whole MJD from 1980 to 2099 and 5 numbers"));
+  EXPECT_THAT(message_for(header_ + rows_ + "55004,0,0,nan,0,0\n"),
+              HasSubstr("expected a whole MJD from 1980 to 2099 and 5 numbers"));
+  EXPECT_THAT(message_for(header_ + rows_ + "55004.5,0,0,0,0,0\n"),
+              HasSubstr("expected a whole MJD from 1980 to 2099 and 5 numbers"));
+  EXPECT_THAT(message_for(header_ + rows_ + "1e99,0,0,0,0,0\n"),
+              HasSubstr("expected a whole MJD from 1980 to 2099 and 5 numbers"));
+  EXPECT_THAT(message_for(header_ + "55000,0,0,0,0,0\n"), HasSubstr("1 days of Earth orientation"));
+  EXPECT_THROW(EarthOrientationSeries::load("/nonexistent/eop.csv"), std::runtime_error);
+}
+
+}  // namespace
+
 namespace {
 
 fsw::Matrix3 matrix(const double (&rows)[3][3]) {
@@ -154,4 +283,51 @@ TEST(EarthRotation, RefusesWhatItHasNoDataFor) {
 }
 
 }  // namespace
+
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+
+TEST(Geodetic, AgreesWithGeographicLib) {
+  // Karney's conversion is exact (a quartic solved in closed form; here from geodetic to Cartesian, a plain formula).
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  accuracy::Largest angle, height;
+  for (int i = 0; i < 20000; ++i) {
+    const double latitude_deg = -90.0 + 180.0 * unit(random);
+    const double longitude_deg = -180.0 + 360.0 * unit(random);
+    const double altitude = 3.6e7 * std::pow(unit(random), 3);
+    fsw::Vector3 r;
+    GeographicLib::Geocentric::WGS84().Forward(latitude_deg, longitude_deg, altitude, r.x(), r.y(), r.z());
+    const GeodeticPosition found = geodetic_from_itrf(r);
+    angle.add(std::abs(found.latitude - latitude_deg * kDegree));
+    angle.add(std::abs(found.longitude - longitude_deg * kDegree));
+    height.add(std::abs(found.altitude - altitude));
+  }
+  // Rounding: 2e-16 of pi, and of 4e7 m; Bowring's second pass is below it.
+  accuracy::expect_below("geodetic latitude and longitude", "GeographicLib Geocentric, 20,000 points to geostationary",
+                         angle, 2e-15, "rad");
+  accuracy::expect_below("geodetic altitude", "GeographicLib Geocentric, 20,000 points to geostationary", height, 3e-8,
+                         "m");
+}
+
+TEST(Geodetic, HoldsAtPolesAndEquator) {
+  const double polar_radius = 6356752.314245179;  // WGS 84, NIMA TR8350.2
+  const GeodeticPosition north = geodetic_from_itrf({0.0, 0.0, polar_radius + 500e3});
+  EXPECT_EQ(north.latitude, M_PI / 2.0);
+  EXPECT_NEAR(north.altitude, 500e3, 2e-9);  // last place of 7e6
+  EXPECT_EQ(geodetic_from_itrf({0.0, 0.0, -polar_radius}).latitude, -M_PI / 2.0);
+  const GeodeticPosition west = geodetic_from_itrf({0.0, -6378137.0, 0.0});
+  EXPECT_EQ(west.latitude, 0.0);
+  EXPECT_EQ(west.longitude, -M_PI / 2.0);
+  EXPECT_NEAR(west.altitude, 0.0, 2e-9);
+}
+
+TEST(Geodetic, NoNumberGivesNoNumber) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(std::isnan(geodetic_from_itrf({nan, 0.0, 7e6}).altitude));
+}
+
+}  // namespace
+
 }  // namespace vbar::truth

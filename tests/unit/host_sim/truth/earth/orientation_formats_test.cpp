@@ -1,7 +1,7 @@
 // Published files of Earth orientation: numbers of the files themselves, and those of the table in data/earth after an
 // independent writer has put them into the published columns.
 
-#include "host_sim/truth/earth/orientation_formats/orientation_formats.h"
+#include "host_sim/truth/earth/orientation_formats.h"
 
 #include <fstream>
 #include <iterator>
@@ -18,7 +18,7 @@
 #include "host_sim/truth/earth/earth_rotation.h"
 #include "host_sim/truth/earth/time_scales.h"
 #include "tests/support/accuracy.h"
-#include "tests/unit/host_sim/truth/truth_fixture.h"
+#include "tests/unit/host_sim/truth/truth_fixtures.h"
 
 namespace vbar::truth {
 namespace {

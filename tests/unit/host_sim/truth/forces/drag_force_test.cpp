@@ -12,7 +12,7 @@
 #include "host_sim/truth/earth/earth_rotation.h"
 #include "host_sim/truth/earth/time_scales.h"
 #include "tests/support/accuracy.h"
-#include "tests/unit/host_sim/truth/truth_fixture.h"
+#include "tests/unit/host_sim/truth/truth_fixtures.h"
 
 namespace vbar::truth {
 namespace {

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <random>
 #include <sstream>
 #include <stdexcept>
@@ -8,16 +10,19 @@
 #include <vector>
 
 #include <GeographicLib/SphericalHarmonic.hpp>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "host_sim/truth/forces/gravitation.h"
 #include "host_sim/truth/forces/gravity_coefficients.h"
-#include "host_sim/truth/forces/gravity_field.h"
+#include "host_sim/truth/forces/solid_tides.h"
 #include "tests/support/accuracy.h"
-#include "tests/unit/host_sim/truth/truth_fixture.h"
+#include "tests/unit/host_sim/truth/truth_fixtures.h"
 
 namespace vbar::truth {
+
 namespace {
 
 using fsw::Vector3;
@@ -209,4 +214,155 @@ TEST(GravityFile, TheShippedFileCutShortAnywhereIsRefused) {
 }
 
 }  // namespace
+
+// ICGEM files: the bundled model after an independent writer has put it into that format, and what is refused.
+
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  EXPECT_TRUE(stream) << file;
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+std::string header(const GravityCoefficients& model, std::string_view norm, std::string_view tide_system) {
+  return fmt::format(
+      "{} WRITTEN FOR A TEST\n=====\n\nproduct_type   gravity_field\nmodelname   {}\nearth_gravity_constant  {:.17e}\n"
+      "radius  {:.17e}\nmax_degree  {}\nerrors  calibrated\nnorm  {}\ntide_system  {}\n\nkey  L  M  c  s  sigma_c  "
+      "sigma_s\nend_of_head ====\n",
+      model.model, model.model, model.gm, model.radius, model.degree, norm, tide_system);
+}
+
+/// By order, as some models are, where the table of data/gravity goes by degree.
+std::string as_icgem(const GravityCoefficients& model) {
+  std::string text = header(model, "fully_normalized", model.tide_system);
+  for (int m = 0; m <= model.degree; ++m)
+    for (int n = m; n <= model.degree; ++n)
+      text += fmt::format("gfc {:4} {:4} {:.17e} {:.17e} 0.0 0.0\n", n, m, model.c_nm(n, m), model.s_nm(n, m));
+  return text;
+}
+
+GravityCoefficients bundled(int degree) {
+  return load_gravity_coefficients(test::kDataDirectory / "gravity/ggm05s_120.txt", degree);
+}
+
+const std::string& egm2008() {
+  static const std::string text = text_of(vbar::tests::source_path("tests/data/formats/egm2008_8.gfc"));
+  return text;
+}
+
+std::string error_of(std::string text, std::string_view what = "", std::string_view with = "", int degree = 8) {
+  if (!what.empty()) text.replace(text.find(what), what.size(), with);
+  try {
+    static_cast<void>(read_gravity(text, "m.gfc", degree));
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(GravityFormats, TheBundledModelAsIcgemFile) {
+  const GravityCoefficients table = bundled(120);
+  for (const int degree : {0, 1, 2, 60, 120}) {
+    const GravityCoefficients read = read_gravity(as_icgem(table), "m.gfc", degree);
+    const GravityCoefficients same = bundled(degree);
+    EXPECT_EQ(read.model, same.model);
+    EXPECT_EQ(read.gm, same.gm);
+    EXPECT_EQ(read.radius, same.radius);
+    EXPECT_EQ(read.tide_system, "zero_tide");
+    EXPECT_EQ(read.degree, degree);
+    EXPECT_EQ(read.c, same.c);
+    EXPECT_EQ(read.s, same.s);
+  }
+}
+
+TEST(GravityFormats, UnnormalisedCoefficientsAreNormalised) {
+  // J2 to J4 and the sectorial of degree 2 of EGM2008: C_n0 / sqrt(2n + 1); C22 by sqrt(5/12).
+  const GravityCoefficients model = read_gravity(egm2008(), "m.gfc", 2);
+  std::string text = header(model, "unnormalized", "tide_free");
+  text += fmt::format("gfc 2 0 {:.17e} 0\n", model.c_nm(2, 0) * std::sqrt(5.0));
+  text += fmt::format("gfc 2 1 {:.17e} {:.17e}\n", model.c_nm(2, 1) * std::sqrt(5.0 / 3.0),
+                      model.s_nm(2, 1) * std::sqrt(5.0 / 3.0));
+  text += fmt::format("gfc 2 2 {:.17e} {:.17e}\n", model.c_nm(2, 2) * std::sqrt(5.0 / 12.0),
+                      model.s_nm(2, 2) * std::sqrt(5.0 / 12.0));
+  const GravityCoefficients read = read_gravity(text, "m.gfc", 2);
+  for (std::size_t k = 0; k < read.c.size(); ++k) {
+    EXPECT_NEAR(read.c[k], model.c[k], 1e-15 * std::abs(model.c[k]));
+    EXPECT_NEAR(read.s[k], model.s[k], 1e-15 * std::abs(model.s[k]));
+  }
+}
+
+TEST(GravityFormats, InvalidFilesAreRefusedWithALine) {
+  EXPECT_EQ(error_of(egm2008()), "");
+  const std::string& text = egm2008();
+  EXPECT_THAT(error_of(text.substr(0, text.find("gfc     7    7"))),
+              AllOf(HasSubstr("m.gfc:46: found the end of the file"), HasSubstr("coefficients of degree 7, order 7")));
+  // Truncated behind the degrees that are used.
+  EXPECT_THAT(error_of(text.substr(0, text.find("gfc     8")), "", "", 4), HasSubstr("coefficients of degree 8"));
+  EXPECT_THAT(error_of(text, "gfc     5    0", "gfct    5    0"),
+              AllOf(HasSubstr("m.gfc:27: found the term \"gfct\""), HasSubstr("a static model")));
+  EXPECT_THAT(error_of(text, "gfc     5    1", "gfc     5    0"), HasSubstr("degree 5, order 0 a second time"));
+  EXPECT_THAT(error_of(text, "gfc     5    1", "gfc     5    6"), HasSubstr("order up to the degree"));
+  EXPECT_THAT(error_of(text, "0.3986004415E+15", "0.3986004415E+06"), HasSubstr("in m^3/s^2 and m"));
+  EXPECT_THAT(error_of(text, "tide_free", "mean_tide"), HasSubstr("expected tide_system zero_tide or tide_free"));
+  EXPECT_THAT(error_of(text, "fully_normalized", "half_normalized"), HasSubstr("found norm half_normalized"));
+  EXPECT_THAT(error_of(text, "-0.484165143790815D-03", "-0.484165143790815X-03"), HasSubstr("m.gfc:15: found"));
+  EXPECT_THAT(error_of(text, "max_degree", "degree"), HasSubstr("found a header without max_degree"));
+  EXPECT_THAT(error_of(text, "", "", 9), HasSubstr("gravity degree 9 asked of m.gfc; it has degrees 0 to 8"));
+  EXPECT_THAT(error_of("x"), HasSubstr("ICGEM gravity field (.gfc)"));
+}
+
+// 1.5e-1 of 1.5e-10 is a number too.
+TEST(GravityFormats, ACoefficientThatIsCutShortIsRefused) {
+  const std::string text = header(read_gravity(egm2008(), "m.gfc", 2), "fully_normalized", "tide_free") +
+                           "gfc 2 0 -4.8e-4 0\ngfc 2 1 -2e-10 1e-9\ngfc 2 2 2.4e-6 -1.4e-6\n";
+  EXPECT_EQ(read_gravity(text, "m.gfc", 2).s_nm(2, 2), -1.4e-6);
+  EXPECT_THAT(error_of(text.substr(0, text.size() - 1), "", "", 2), HasSubstr("found a last row without a line feed"));
+}
+
+}  // namespace
+
+namespace {
+
+TEST(LowDegreeField, IsTheGravityFieldOfTheSameCoefficients) {
+  // gravity_field.h, which agrees with an independent program, sums other recursions of the same series.
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 50; ++i) {
+    LowDegreeCoefficients low;
+    GravityCoefficients field;
+    field.gm = 3.986004415e14;
+    field.radius = 6378136.3;
+    field.degree = 4;
+    field.c.assign(GravityCoefficients::index(5, 0), 0.0);
+    field.s = field.c;
+    for (int n = 2; n <= 4; ++n) {
+      for (int m = 0; m <= n; ++m) {
+        field.c[GravityCoefficients::index(n, m)] = low.c[n][m] = 1e-9 * normal(random);
+        if (m > 0) field.s[GravityCoefficients::index(n, m)] = low.s[n][m] = 1e-9 * normal(random);
+      }
+    }
+    const GravityField reference(field, 4, 4);
+    const fsw::Vector3 r = 6.9e6 * fsw::Vector3(normal(random), normal(random), normal(random)).normalized();
+    const fsw::Vector3 expected = reference.perturbation_itrf(r);
+    // Rounding of some thirty terms.
+    EXPECT_LT((acceleration_itrf(low, field.gm, field.radius, r) - expected).norm(), 1e-14 * expected.norm());
+  }
+}
+
+TEST(LowDegreeField, HasNoSingularityAtThePoles) {
+  LowDegreeCoefficients field;
+  field.c[2][1] = 1e-9;
+  field.s[3][1] = -2e-9;
+  const fsw::Vector3 at_pole = acceleration_itrf(field, 4e14, 6.4e6, {0.0, 0.0, 7e6});
+  const fsw::Vector3 beside = acceleration_itrf(field, 4e14, 6.4e6, {1e-3, 0.0, 7e6});
+  EXPECT_GT(at_pole.norm(), 1e-9);
+  EXPECT_LT((at_pole - beside).norm(), 1e-9 * at_pole.norm());  // a millimetre of 7000 km, times the degree
+}
+
+}  // namespace
+
 }  // namespace vbar::truth

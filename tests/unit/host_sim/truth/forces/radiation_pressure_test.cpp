@@ -1,14 +1,20 @@
+#include "host_sim/truth/forces/radiation_pressure.h"
+
 #include <cmath>
+#include <random>
 #include <stdexcept>
+#include <tuple>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "host_sim/truth/dopri5.h"
-#include "host_sim/truth/event_location.h"
-#include "host_sim/truth/forces/radiation_pressure_force.h"
+#include "host_sim/truth/earth/sun_moon.h"
+#include "host_sim/truth/integration/dopri5.h"
+#include "host_sim/truth/integration/event_location.h"
+#include "tests/support/accuracy.h"
 
 namespace vbar::truth {
+
 namespace {
 
 using fsw::Vector3;
@@ -144,4 +150,165 @@ TEST(RadiationPressure, RefusesNonsense) {
 }
 
 }  // namespace
+
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+
+/// Circular orbit in the x-y plane.
+Vector3 on_circle(double radius, double angle) {
+  return {radius * std::cos(angle), radius * std::sin(angle), 0.0};
+}
+
+/// How long (s) `edge(angle)` is negative on a circular orbit, around the angle pi where it is lowest.
+template <class Edge>
+double negative_for(double radius, const Edge& edge) {
+  const double rate = std::sqrt(kGm / radius) / radius;
+  const auto at = [&](double seconds) { return edge(M_PI + rate * seconds); };
+  const double half_turn = M_PI / rate;
+  if (!(at(0.0) < 0.0)) return 0.0;
+  return first_sign_change(at, 0.0, half_turn, 10, 1e-9).value() -
+         first_sign_change(at, 0.0, -half_turn, 10, 1e-9).value();
+}
+
+TEST(CylindricalShadow, LastsAsLongAsGeometrySays) {
+  // Sphere, parallel light at angle beta from the orbital plane: half the shadow's arc has the cosine
+  // sqrt(r^2 - R^2) / (r cos beta) (e.g. Vallado 2013, section 5.3). Located to 1e-9 s; 1e-6 s for sines' roundings,
+  // which the shallow crossings of a high beta magnify.
+  for (double radius : {6.7e6, 7.0873e6, 2.6e7, 4.2164e7}) {
+    const double highest = std::asin(kSphere.equatorial_radius / radius);
+    for (double part : {0.0, 0.2, 0.5, 0.9, 0.999}) {
+      const double beta = part * highest;
+      const Vector3 sun = kAstronomicalUnit * Vector3(std::cos(beta), 0.0, std::sin(beta));
+      const double tangent = std::sqrt(radius * radius - kSphere.equatorial_radius * kSphere.equatorial_radius);
+      const double arc = 2.0 * std::acos(tangent / (radius * std::cos(beta)));
+      const auto edge = [&](double angle) { return cylindrical_shadow_edge(on_circle(radius, angle), sun, kSphere); };
+      EXPECT_NEAR(negative_for(radius, edge), arc / std::sqrt(kGm / radius) * radius, 1e-6) << radius << " " << beta;
+    }
+    const Vector3 too_high = kAstronomicalUnit * Vector3(std::cos(1.001 * highest), 0.0, std::sin(1.001 * highest));
+    EXPECT_GT(cylindrical_shadow_edge(on_circle(radius, M_PI), too_high, kSphere), 0.0);
+  }
+}
+
+TEST(CylindricalShadow, HasNoEdgeOnTheSunnySide) {
+  const Vector3 sun(kAstronomicalUnit, 0.0, 0.0);
+  for (double angle = -89.0; angle <= 89.0; angle += 1.0) {
+    EXPECT_GT(cylindrical_shadow_edge(on_circle(6.5e6, angle * kDegree), sun, kSphere), 0.0);
+  }
+}
+
+TEST(CylindricalShadow, IsThatOfTheEllipsoid) {
+  // The ray towards the Sun meets the ellipsoid x^2 + y^2 + z^2 / (1-f)^2 = R^2 or not: a quadratic equation.
+  const EarthFigure earth;
+  const double squeeze = 1.0 / ((1.0 - earth.flattening) * (1.0 - earth.flattening));
+  const auto product = [&](const Vector3& a, const Vector3& b) {
+    return a.x() * b.x() + a.y() * b.y() + a.z() * b.z() * squeeze;
+  };
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> height(1e5, 4e6);
+  int in_shadow = 0, sphere_differs = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const Vector3 direction = Vector3(normal(random), normal(random), normal(random)).normalized();
+    const Vector3 position = (earth.equatorial_radius + height(random)) * direction;
+    const Vector3 sun = kAstronomicalUnit * Vector3(normal(random), normal(random), 0.4 * normal(random)).normalized();
+    const double b = product(position, sun), a = product(sun, sun);
+    const double c = product(position, position) - earth.equatorial_radius * earth.equatorial_radius;
+    const bool hidden = b < 0.0 && b * b > a * c;
+    EXPECT_EQ(cylindrical_shadow_edge(position, sun, earth) < 0.0, hidden);
+    in_shadow += hidden ? 1 : 0;
+    sphere_differs += hidden != (cylindrical_shadow_edge(position, sun, kSphere) < 0.0) ? 1 : 0;
+  }
+  EXPECT_GT(in_shadow, 1000);
+  EXPECT_GT(sphere_differs, 10);
+}
+
+TEST(Shadow, OfTheGeostationarySeason) {
+  // At the equinox a geostationary spacecraft is eclipsed longest, 72 minutes with the penumbra (Soop 1994,
+  // section 5.3: 70 minutes without the Sun's disk). By the sidereal turn here, 0.3 per cent short of the solar day's.
+  constexpr double kRadius = 4.2164e7;
+  const Vector3 sun(kAstronomicalUnit, 0.0, 0.0);
+  const EarthFigure earth;
+  const auto disks = [&](double angle) { return sky_disks(on_circle(kRadius, angle), sun, earth); };
+  const double cylinder = negative_for(
+      kRadius, [&](double angle) { return cylindrical_shadow_edge(on_circle(kRadius, angle), sun, earth); });
+  const double penumbra = negative_for(kRadius, [&](double angle) { return penumbra_outer_edge(disks(angle)); });
+  const double umbra = negative_for(kRadius, [&](double angle) { return penumbra_inner_edge(disks(angle)); });
+  EXPECT_NEAR(cylinder / 60.0, 69.5, 0.5);
+  EXPECT_NEAR(penumbra / 60.0, 71.5, 0.5);
+  // The Sun's diameter, 32 arcmin, takes 2.1 minutes to set.
+  EXPECT_NEAR((penumbra - umbra) / 2.0 / 60.0, 2.13, 0.05);
+}
+
+/// The Sun's hidden part by rings about its centre: of a ring of angular radius rho the Earth's cap hides the arc where
+/// cos(earth) < cos(rho) cos(separation) + sin(rho) sin(separation) cos(azimuth). Midpoint rule over the rings.
+double hidden_by_rings(const SkyDisks& disks) {
+  constexpr int kRings = 200000;
+  double hidden = 0.0, all = 0.0;
+  for (int i = 0; i < kRings; ++i) {
+    const double rho = disks.sun_radius * (i + 0.5) / kRings;
+    const double weight = std::sin(rho);
+    const double cosine = (std::cos(disks.earth_radius) - std::cos(rho) * std::cos(disks.separation)) /
+                          (std::sin(rho) * std::sin(disks.separation));
+    hidden += weight * std::acos(std::clamp(cosine, -1.0, 1.0)) / M_PI;
+    all += weight;
+  }
+  return hidden / all;
+}
+
+TEST(Penumbra, IsTheOverlapOfTwoDisksOnTheSky) {
+  // From a low orbit (the Earth 64 degrees in radius) to beyond the umbra's apex (smaller than the Sun). The
+  // projection's scale varies by 2e-5 over the Sun's disk; the rings' sums are good to 1e-6.
+  const double sun = 0.00465;
+  accuracy::Largest largest;
+  for (double earth : {64.0 * kDegree, 30.0 * kDegree, 8.7 * kDegree, 1.0 * kDegree, 0.3 * kDegree, 0.2 * kDegree}) {
+    for (double part : {0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.98}) {
+      const double inner = std::abs(earth - sun), outer = earth + sun;
+      const SkyDisks disks{sun, earth, inner + part * (outer - inner)};
+      largest.add(std::abs(1.0 - penumbra_sunlit_fraction(disks) - hidden_by_rings(disks)));
+    }
+  }
+  accuracy::expect_below("sunlit fraction in the penumbra", "integration over the Sun's disk, 42 geometries", largest,
+                         2e-5, "of full sunlight");
+}
+
+TEST(Penumbra, HalfTheSunIsHiddenByAGreatCircle) {
+  // A limb that is a great circle (the Earth a hemisphere) through the Sun's centre.
+  const SkyDisks disks{0.00465, M_PI_2 - 1e-9, M_PI_2 - 1e-9};
+  EXPECT_NEAR(penumbra_sunlit_fraction(disks), 0.5, 1e-6);
+}
+
+TEST(Penumbra, IsContinuousAtItsRims) {
+  const double sun = 0.00465;
+  for (double earth : {64.0 * kDegree, 8.7 * kDegree, 0.3 * kDegree, 0.2 * kDegree}) {
+    const double inner = std::abs(earth - sun), outer = earth + sun;
+    // Near a rim the covered part changes with the power 3/2 of the way, in units of the disk: (1e-11 / 5e-3)^1.5 is
+    // 1e-13, and the roundings of angles near 1 rad over the Sun's size 1e-13.
+    EXPECT_NEAR(penumbra_sunlit_fraction({sun, earth, outer - 1e-11}), 1.0, 1e-12);
+    EXPECT_EQ(penumbra_sunlit_fraction({sun, earth, outer + 1e-11}), 1.0);
+    const SkyDisks inside{sun, earth, inner - 1e-11}, outside{sun, earth, inner + 1e-11};
+    EXPECT_NEAR(penumbra_sunlit_fraction(outside), inner_sunlit_fraction(outside), 1e-12);
+    EXPECT_EQ(penumbra_sunlit_fraction(inside), inner_sunlit_fraction(inside));
+  }
+}
+
+TEST(Penumbra, RimsAreWhereTheDisksTouch) {
+  // Beyond the umbra's apex the Earth is the smaller disk.
+  const EarthFigure earth;
+  const Vector3 sun(kAstronomicalUnit, 0.0, 0.0);
+  const SkyDisks near = sky_disks({-7e6, 0.0, 0.0}, sun, earth), far = sky_disks({-1.5e9, 0.0, 0.0}, sun, earth);
+  EXPECT_EQ(inner_sunlit_fraction(near), 0.0);
+  EXPECT_LT(penumbra_inner_edge(near), 0.0);
+  EXPECT_LT(penumbra_inner_edge(far), 0.0);
+  // Angular radii by definition: 6378.137 / 1.5e6 and 695700 / (149597870.7 + 1.5e6), their sines.
+  const double ratio = (6378.137 / 1.5e6) / (695700.0 / 151097870.7);
+  EXPECT_NEAR(inner_sunlit_fraction(far), 1.0 - ratio * ratio, 2e-5);  // plane angles for sines: the radius squared
+  // The apex: where both look the same, R d / (Rs - R) from the centre, 1.385 million km.
+  const double apex = 6378137.0 * kAstronomicalUnit / (kSunRadius - 6378137.0);
+  const SkyDisks there = sky_disks({-apex, 0.0, 0.0}, sun, earth);
+  EXPECT_NEAR(there.earth_radius, there.sun_radius, 1e-12);
+}
+
+}  // namespace
+
 }  // namespace vbar::truth

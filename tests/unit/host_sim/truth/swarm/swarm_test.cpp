@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/accuracy.h"
-#include "tests/unit/host_sim/truth/swarm/swarm_forces.h"
+#include "tests/unit/host_sim/truth/swarm/precise_orbit.h"
 
 namespace vbar::truth {
 namespace {

@@ -1,12 +1,11 @@
 // A binned camera against sums of a single-pixel camera's own images: light, place of a point, noise.
 
-#include "host_sim/twins/camera/binning.h"
-
 #include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "host_sim/twins/camera/camera_settings.h"
 #include "host_sim/twins/camera/detector.h"
 #include "host_sim/twins/camera/optics.h"
 #include "host_sim/twins/camera/point_spread.h"

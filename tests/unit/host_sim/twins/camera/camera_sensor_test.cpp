@@ -14,8 +14,7 @@
 
 #include "fsw/packets/messages.h"
 #include "host_sim/truth/earth/time_scales.h"
-#include "host_sim/twins/camera/image_recipe.h"
-#include "host_sim/twins/camera/recorded_image.h"
+#include "host_sim/twins/camera/logged_image.h"
 #include "host_sim/twins/packet_encoder.h"
 
 namespace vbar::twins::camera {

@@ -11,7 +11,7 @@
 #include <Random123/philox.h>
 #include <gtest/gtest.h>
 
-#include "host_sim/engine/distributions.h"
+#include "host_sim/engine/random_stream.h"
 #include "tests/support/figures.h"
 
 namespace vbar::twins::camera {

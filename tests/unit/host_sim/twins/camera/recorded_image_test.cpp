@@ -1,7 +1,5 @@
 // An image with its pixels as bytes and back, and bytes that are damaged.
 
-#include "host_sim/twins/camera/recorded_image.h"
-
 #include <algorithm>
 #include <random>
 #include <stdexcept>
@@ -9,6 +7,8 @@
 #include <tuple>
 
 #include <gtest/gtest.h>
+
+#include "host_sim/twins/camera/logged_image.h"
 
 namespace vbar::twins::camera {
 namespace {

@@ -1,7 +1,5 @@
 // Files of stars: what is accepted, what is refused, and the main catalogue of Hipparcos against the project's table.
 
-#include "host_sim/twins/camera/star_catalogue.h"
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -17,6 +15,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "host_sim/twins/camera/star_sky.h"
 #include "tests/support/camera_scene.h"
 #include "tests/support/figures.h"
 

@@ -13,7 +13,6 @@
 #include <erfa.h>
 #include <gtest/gtest.h>
 
-#include "host_sim/twins/camera/aberration.h"
 #include "tests/support/camera_scene.h"
 #include "tests/support/figures.h"
 

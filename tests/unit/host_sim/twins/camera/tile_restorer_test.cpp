@@ -1,7 +1,5 @@
 // A log without tiles, and its tiles restored: from recipes by rendering, from recordings by decoding.
 
-#include "host_sim/twins/camera/tile_restorer.h"
-
 #include <algorithm>
 #include <csignal>
 #include <stdexcept>
@@ -9,9 +7,9 @@
 #include <sys/resource.h>
 
 #include "host_sim/twins/camera/image_maker.h"
-#include "host_sim/twins/camera/recorded_image.h"
-#include "host_sim/twins/image_log.h"
-#include "host_sim/twins/lcm_log_reader.h"
+#include "host_sim/twins/camera/logged_image.h"
+#include "host_sim/twins/lcm_log.h"
+#include "host_sim/twins/packet_log.h"
 #include "tests/unit/host_sim/twins/log_file.h"
 
 namespace vbar::twins::camera {

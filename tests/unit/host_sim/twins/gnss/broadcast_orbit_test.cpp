@@ -1,18 +1,23 @@
-#include "host_sim/twins/gnss/broadcast_orbit.h"
-
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "host_sim/twins/gnss/constellation.h"
 #include "host_sim/twins/gnss/ephemeris_file.h"
 #include "host_sim/twins/gnss/navigation_message.h"
+#include "host_sim/twins/gnss/satellite.h"
 #include "host_sim/twins/gnss/system_time.h"
 #include "tests/support/accuracy.h"
 #include "tests/support/paths.h"
 
 namespace vbar::twins::gnss {
+
 namespace {
 
 const std::filesystem::path kFiles = std::filesystem::path(vbar::tests::source_path("data")) / "gps";
@@ -236,4 +241,163 @@ TEST(NavigationMessage, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
+
+namespace {
+
+// A subframe 4 of the real satellite PRN 5, as a u-blox receiver reported it (UBX-RXM-SFRBX in the test data of the
+// decoder pyubx2; that receiver inverts each word whose predecessor ends with D30 = 1, which is undone here).
+constexpr std::array<std::uint32_t, 10> kReportedData{0x8B0140, 0x4B45B2, 0x5E26F3, 0x63FD25, 0xFD4000,
+                                                      0xA10C23, 0x92F454, 0x8D6F1C, 0xB71F0D, 0xD5FFD3};
+constexpr std::array<std::uint32_t, 10> kTransmitted{
+    0x22C0502E, 0x12D16C80, 0x1789BCED, ~0x18FF4950U & 0x3FFFFFFFU, ~0x3F50000FU & 0x3FFFFFFFU,
+    0x284308F0, 0x24BD152A, 0x235BC727, ~0x2DC7C349U & 0x3FFFFFFFU, 0x357FF4E0};
+
+TEST(LnavParity, WordsOfARealSatellite) {
+  std::uint32_t previous = 0;
+  for (std::size_t k = 0; k < 10; ++k) {
+    EXPECT_EQ(lnav_word(kReportedData[k], previous), kTransmitted[k]) << "word " << k + 1;
+    previous = kTransmitted[k];
+  }
+}
+
+// The two bits that the satellite solved for in words 2 and 10 are found again.
+TEST(LnavParity, SubframeOfARealSatelliteWithItsSolvedBits) {
+  Subframe subframe{};
+  for (std::size_t k = 0; k < 10; ++k)
+    for (std::size_t byte = 0; byte < 3; ++byte)
+      subframe[3 * k + byte] = static_cast<std::uint8_t>(kReportedData[k] >> (16U - 8U * byte) & 0xFFU);
+  subframe[5] &= 0xFCU;
+  subframe[29] &= 0xFCU;
+  EXPECT_EQ(lnav_transmitted(subframe), kTransmitted);
+}
+
+std::uint32_t field(const Subframe& subframe, std::size_t first_bit, std::size_t count) {
+  std::uint32_t value = 0;
+  for (std::size_t k = first_bit; k < first_bit + count; ++k)
+    value = value << 1U | (subframe[k / 8] >> (7U - k % 8) & 1U);
+  return value;
+}
+
+// Positions (bits of the subframe without parity) and scales: IS-GPS-200N figure 20-1 sheet 8, tables 20-IX and 20-X.
+// Klobuchar numbers on their grid.
+TEST(LnavParity, PageEighteenHasTheFieldsOfTheInterfaceSpecification) {
+  BroadcastCorrections corrections;
+  corrections.klobuchar.alpha = {3.0 * 0x1p-30, -4.0 * 0x1p-27, 5.0 * 0x1p-24, -6.0 * 0x1p-24};
+  corrections.klobuchar.beta = {7.0 * 0x1p11, -8.0 * 0x1p14, 9.0 * 0x1p16, -10.0 * 0x1p16};
+  corrections.utc_a0_s = -11.0 * 0x1p-30;
+  corrections.utc_a1 = 12.0 * 0x1p-50;
+  const UtcOffset utc{.gps_minus_utc_s = 15, .change_week = 1512, .change_day = 4};
+  const Subframe page = lnav_page_18(corrections, utc, gps_time_of(System::kGps, 1645, 90030));
+  EXPECT_EQ(field(page, 0, 8), 0x8BU);
+  EXPECT_EQ(field(page, 24, 17), 90030U / 6U + 4U);  // beginning of the next subframe
+  EXPECT_EQ(field(page, 43, 3), 4U);
+  EXPECT_EQ(field(page, 48, 2), 1U);
+  EXPECT_EQ(field(page, 50, 6), 56U);
+  constexpr std::array<std::uint32_t, 8> kIonosphere{3, 0x100 - 4, 5, 0x100 - 6, 7, 0x100 - 8, 9, 0x100 - 10};
+  for (std::size_t k = 0; k < 8; ++k) EXPECT_EQ(field(page, 56 + 8 * k, 8), kIonosphere[k]) << k;
+  EXPECT_EQ(field(page, 120, 24), 12U);
+  EXPECT_EQ(field(page, 144, 32), 0xFFFFFFFFU - 10U);
+  EXPECT_EQ(field(page, 176, 8), 36U);  // 147456 s in units of 4096 s
+  EXPECT_EQ(field(page, 184, 8), 1645U % 256U);
+  EXPECT_EQ(field(page, 192, 8), 15U);
+  EXPECT_EQ(field(page, 200, 8), 1512U % 256U);
+  EXPECT_EQ(field(page, 208, 8), 4U);
+  EXPECT_EQ(field(page, 216, 8), 15U);
+}
+
+TEST(LnavParity, DummyPageNamesNoSatellite) {
+  const Subframe page = lnav_dummy_page(5, gps_time_of(System::kGps, 1645, 604770));
+  EXPECT_EQ(field(page, 24, 17), 0U);  // the next subframe begins the week
+  EXPECT_EQ(field(page, 43, 3), 5U);
+  EXPECT_EQ(field(page, 50, 6), 0U);
+  for (std::size_t k = 56; k < 238; k += 2) EXPECT_EQ(field(page, k, 2), 2U) << k;
+}
+
+TEST(LnavParity, ANumberThatDoesNotFitPageEighteenIsRefused) {
+  BroadcastCorrections corrections;
+  corrections.klobuchar.alpha[0] = 1.0;
+  EXPECT_THROW(lnav_page_18(corrections, {}, gps_time_of(System::kGps, 1645, 0)), std::out_of_range);
+}
+
+}  // namespace
+
+namespace {
+
+constexpr const char* kColumns =
+    "satellite,week,toe_s,toc_s,sqrt_a,e,m0,delta_n,omega0,omega_dot,i0,i_dot,omega,cuc,cus,cic,cis,crc,crs,af0,af1,"
+    "af2,group_delay_s\n";
+constexpr const char* kNumbers =
+    "1658,388800,388784,5153.66,0.0004,1,2,3,4,5,6,7,8,9,10,11,12,13,1e-4,1e-6,1e-12,5e-9\n";
+
+// A file of one test process, removed at its end.
+class ScratchFile {
+ public:
+  explicit ScratchFile(const std::string& text)
+      : path_(std::filesystem::temp_directory_path() / fmt::format("vbar_ephemerides_{}.csv", ::getpid())) {
+    std::ofstream(path_) << text;
+  }
+  ScratchFile(const ScratchFile&) = delete;
+  ScratchFile& operator=(const ScratchFile&) = delete;
+  ~ScratchFile() { std::filesystem::remove(path_); }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string refusal(const std::string& text) {
+  const ScratchFile file(text);
+  try {
+    read_ephemeris_file(file.path());
+  } catch (const std::runtime_error& error) {
+    const std::string message = error.what();
+    const std::string name = file.path().string();
+    return message.starts_with(name) ? message.substr(name.size()) : message;
+  }
+  return "accepted";
+}
+
+// The clock's reference time is moved to toe, 16 s after toc: af0 + 16 af1 + 256 af2.
+TEST(EphemerisFile, ReadsNumbersIntoTheirPlaces) {
+  const ScratchFile file(std::string("# a comment\nutc_a0_a1,1e-9,2e-15\n") + kColumns + "E07," + kNumbers);
+  const EphemerisFile read = read_ephemeris_file(file.path());
+  ASSERT_EQ(read.satellites.size(), 1U);
+  const Ephemeris& set = read.satellites.front();
+  EXPECT_EQ(set.satellite, (SatelliteId{System::kGalileo, 7}));
+  EXPECT_EQ(set.toe.ns, (1658 * 604800LL + 388800) * 1'000'000'000LL);
+  EXPECT_EQ(set.m0, 1.0);
+  EXPECT_EQ(set.omega, 7.0);
+  EXPECT_EQ(set.crs, 13.0);
+  EXPECT_NEAR(set.af0, 1e-4 + 16e-6 + 256e-12, 1e-18);
+  EXPECT_NEAR(set.af1, 1e-6 + 32e-12, 1e-18);
+  EXPECT_EQ(set.group_delay_s, 5e-9);
+  EXPECT_EQ(read.corrections.utc_a1, 2e-15);
+}
+
+// A group delay of 5e-9 s cut to 5 s is a number too.
+TEST(EphemerisFile, ALastNumberThatIsCutShortIsRefused) {
+  const std::string text = std::string(kColumns) + "E07," + kNumbers;
+  EXPECT_EQ(refusal(text), "accepted");
+  for (const std::size_t cut : {1U, 4U})
+    EXPECT_EQ(refusal(text.substr(0, text.size() - cut)),
+              ":2: found a last row without a line feed, expected one: its last number may be cut short");
+}
+
+TEST(EphemerisFile, RefusesWithLineAndReason) {
+  const std::string head = kColumns;
+  EXPECT_EQ(refusal(""), ": holds no satellite");
+  EXPECT_EQ(refusal(head + "X05," + kNumbers),
+            ":2: \"X05\" is not a satellite; accepted are G, E or C and a number from 01 to 63");
+  EXPECT_EQ(refusal(head + "G05,1658,12\n"), ":2: 2 numbers instead of 22");
+  EXPECT_EQ(refusal(head + "G05,nan," + kNumbers), ":2: \"nan\" is not a number");
+  EXPECT_EQ(refusal(head + "G05,1," + kNumbers), ":2: more than 22 numbers");
+  EXPECT_EQ(refusal("klobuchar_alpha,1,2\n" + head), ":1: klobuchar_alpha needs 4 numbers");
+  std::string flat = kNumbers;
+  flat.replace(flat.find("0.0004"), 6, "0.9");
+  EXPECT_EQ(refusal(head + "G05," + flat), ":2: an eccentricity of 0.9 does not lie between 0 and 0.2");
+  EXPECT_THROW(read_ephemeris_file("/nonexistent"), std::runtime_error);
+}
+
+}  // namespace
+
 }  // namespace vbar::twins::gnss

@@ -1,15 +1,21 @@
 // The measured noise of an emulated receiver against the formulas of its loops.
 
 #include <cmath>
+#include <filesystem>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include <gtest/gtest.h>
 
+#include "host_sim/twins/gnss/point_solution.h"
+#include "host_sim/twins/gnss/tracking.h"
 #include "tests/support/accuracy.h"
 #include "tests/support/gnss_scene.h"
+#include "tests/support/paths.h"
 
 namespace vbar::twins::gnss {
+
 namespace {
 
 struct Sums {
@@ -107,4 +113,99 @@ TEST(GnssReceiverNoise, WanderIsThatOfASeparateStreamOfEachCarrier) {
 }
 
 }  // namespace
+
+namespace {
+
+ClockSettings quiet_start() {
+  ClockSettings settings;
+  settings.initial_offset_ms = 0.0;
+  settings.initial_drift_sigma_ns_per_s = 0.0;
+  return settings;
+}
+
+// After t the two-state model has variances S_f t + S_g t^3/3 and S_g t and covariance S_g t^2/2, whatever the steps
+// between: 3000 clocks, 10 steps of 100 s; a sample variance of 3000 is within 10 % (4 sigma).
+TEST(ReceiverClock, GrowsAsTheTwoStateModel) {
+  const ClockSettings settings = quiet_start();
+  constexpr int kClocks = 3000;
+  double bias_square = 0.0;
+  double drift_square = 0.0;
+  double product = 0.0;
+  for (std::uint64_t seed = 0; seed < kClocks; ++seed) {
+    ReceiverClock clock(settings, seed, "test");
+    for (int step = 0; step < 10; ++step) clock.advance(100.0);
+    bias_square += clock.offset_s() * clock.offset_s();
+    drift_square += clock.drift() * clock.drift();
+    product += clock.offset_s() * clock.drift();
+  }
+  const double s_f = 1e-19;
+  const double s_g = 2.0 * 9.8696044 * 2e-20;
+  const double t = 1000.0;
+  EXPECT_NEAR(bias_square / kClocks / (s_f * t + s_g * t * t * t / 3.0), 1.0, 0.1);
+  EXPECT_NEAR(drift_square / kClocks / (s_g * t), 1.0, 0.1);
+  EXPECT_NEAR(product / kClocks / (s_g * t * t / 2.0), 1.0, 0.12);
+}
+
+// A fast clock is set by whole milliseconds and stays within half of one.
+TEST(ReceiverClock, IsSetByWholeMilliseconds) {
+  ClockSettings settings;
+  settings.initial_drift_sigma_ns_per_s = 5000.0;
+  ReceiverClock clock(settings, 4, "test");
+  int jumps = 0;
+  for (int k = 0; k < 6000; ++k) {
+    const double before = clock.offset_s();
+    const double drift = clock.drift();
+    clock.advance(1.0);
+    EXPECT_LE(std::abs(clock.offset_s()), 0.5e-3);
+    if (clock.jumps() == jumps) continue;
+    jumps = clock.jumps();
+    const double step_ms = (clock.offset_s() - before - drift) * 1e3;
+    EXPECT_NEAR(std::abs(step_ms), 1.0, 1e-5);  // noise of one second: nanoseconds
+  }
+  EXPECT_GT(jumps, 2);
+}
+
+}  // namespace
+
+namespace {
+
+// Standard deviations computed by hand from the printed formulas, to their last digit: narrow correlator, 0.25 Hz, 20
+// ms; Costas loop of 15 Hz.
+TEST(SignalNoise, LoopsFollowTheirFormulas) {
+  const TrackingSettings settings;
+  const double code_m[] = {0.329, 0.184, 0.104};
+  const double l1_mm[] = {1.174, 0.660, 0.371};
+  const double l2_mm[] = {1.507, 0.847, 0.476};
+  for (int k = 0; k < 3; ++k) {
+    const double cn0 = 40.0 + 5.0 * k;
+    EXPECT_NEAR(code_noise_m(settings, Signal::kGpsL1, cn0), code_m[k], 6e-4) << cn0;
+    EXPECT_NEAR(carrier_noise_m(settings, Signal::kGpsL1, cn0) * 1e3, l1_mm[k], 6e-4) << cn0;
+    EXPECT_NEAR(carrier_noise_m(settings, Signal::kGpsL2, cn0) * 1e3, l2_mm[k], 6e-4) << cn0;
+  }
+}
+
+// A link budget by hand: -158.5 dBW at 25,240 km, gain 4 dBi, losses 2 dB, noise temperature 130 + 290 (10^0.2 - 1) +
+// 290 (10^0.8 - 1)/10^3.3 K = 300.4 K, so N0 = -203.82 dBW/Hz. Free space: 6.02 dB for half the distance.
+TEST(SignalNoise, LinkBudget) {
+  const LinkBudgetSettings settings;
+  EXPECT_NEAR(carrier_to_noise_dbhz(settings, Signal::kGpsL1, 25.24e6, 0.0), 47.32, 0.01);
+  EXPECT_NEAR(carrier_to_noise_dbhz(settings, Signal::kGpsL1, 12.62e6, 0.0), 47.32 + 6.02, 0.01);
+  EXPECT_NEAR(carrier_to_noise_dbhz(settings, Signal::kGpsL1, 25.24e6, 8.89), 47.32 - 8.89, 0.01);
+}
+
+// Values of the pattern's file at and between its angles.
+TEST(SignalNoise, AntennaPattern) {
+  const AntennaPattern pattern = AntennaPattern::load(std::filesystem::path(vbar::tests::source_path("data")));
+  const auto at_deg = [&pattern](double angle) {
+    return pattern.attenuation_db(std::cos(angle * std::numbers::pi / 180));
+  };
+  EXPECT_NEAR(at_deg(0.0), 0.0, 1e-9);
+  EXPECT_NEAR(at_deg(60.0), 4.89, 1e-9);
+  EXPECT_NEAR(at_deg(92.5), (8.89 + 9.78) / 2.0, 1e-9);
+  EXPECT_NEAR(at_deg(180.0), 31.56, 1e-9);
+  EXPECT_THROW(AntennaPattern::load("/nonexistent"), std::runtime_error);
+}
+
+}  // namespace
+
 }  // namespace vbar::twins::gnss

@@ -15,7 +15,7 @@
 
 #include "host_sim/truth/earth/time_scales.h"
 #include "host_sim/twins/gnss/constellation.h"
-#include "host_sim/twins/gnss/formats/ephemeris_formats.h"
+#include "host_sim/twins/gnss/ephemeris_file.h"
 #include "tests/support/paths.h"
 
 namespace vbar::twins::gnss {

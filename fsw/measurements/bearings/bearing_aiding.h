@@ -1,0 +1,115 @@
+#pragma once
+// Bearings of a camera as an aid of the filter: the initial relative orbit from a batch with the a-priori orbit, then
+// rows at each image.
+
+#include <cstdint>
+#include <optional>
+
+#include "fsw/filter/relative_navigation_filter.h"
+#include "fsw/measurements/aid.h"
+#include "fsw/measurements/bearings/bearing_batch.h"
+#include "fsw/packets/messages.h"
+#include "fsw/vision/target_tracking/bearing.h"
+
+namespace vbar::fsw::measurements {
+
+// Measurement model of a bearing: rows of the filter.
+
+struct BearingModel {
+  /// 1 sigma, m, per axis: centroid of the target's light about its mean, independent from image to image (its attitude
+  /// and illumination change meanwhile). In metres it is the same at all ranges: negligible beyond 30 km, most of the
+  /// error within 10 km.
+  double centroid_noise_m = 0.08;
+
+  bool operator==(const BearingModel&) const = default;
+};
+
+/// Fills the batch with the two components of the measured direction across the predicted one (bearing_axes(), rad).
+/// The filter stands at the time of the bearing. Any status of the orbit conversions if there is no target to predict.
+///
+/// Model: axes (rho + sun_offset s + wander - o) / |...| + bearing bias; rho is sampled over the ROE, all others
+/// enter linearly.
+Status bearing_rows(const filter::RelativeNavigationFilter& filter, const target_tracking::BearingMeasurement& bearing,
+                    const Vector3& sun_eci, const BearingModel& model, filter::MeasurementBatch& batch);
+
+struct BearingSettings {
+  BearingModel model;
+  measurements::BearingBatchSettings batch;
+  double gate = 13.8;  ///< of the normalised innovation squared: 99.9 % of two degrees of freedom
+
+  bool operator==(const BearingSettings&) const = default;
+};
+
+/// Edit status of a bearing; numbers of telemetry_image, edit status.
+enum class BearingEditStatus : std::uint8_t { kNone, kRejected, kFilter, kBatch };
+
+/// Result of one bearing. Residuals in rad, in the rows of bearing_axes().
+struct BearingUpdate {
+  Vector2 prefit = Vector2::Zero();
+  Vector2 postfit = Vector2::Zero();
+  double nis = 0.0;
+};
+
+struct BearingCounters {
+  std::int32_t used = 0;
+  std::int32_t rejected = 0;
+  std::int32_t batches_failed = 0;
+  std::int32_t inflations = 0;  ///< of the covariance, after consecutive rejections
+  std::int32_t restarts = 0;    ///< of the batch, after the orbit had been initialised
+};
+
+class BearingAiding {
+ public:
+  static constexpr filter::MeasurementSource kSource{.bit = navigation_configuration::kUseBearings,
+                                                     .confirms_orbit = true};
+
+  /// Replaces the settings; a batch being collected stays unless its settings change.
+  void configure(const BearingSettings& settings);
+
+  /// Processes the bearing of an image; the filter stands at its time. Must be called for images without a bearing too,
+  /// so that the burns since the last image enter the batch.
+  BearingEditStatus process(GpsTime time, const std::optional<target_tracking::BearingMeasurement>& bearing,
+                            const Vector3& sun_eci, filter::RelativeNavigationFilter& filter);
+
+  /// Notes that nothing was measured until `now`: the state follows the age of the last accepted bearing.
+  void check_age(GpsTime now);
+
+  /// Deactivates the own blocks; the orbit stays.
+  void stop(GpsTime now, filter::RelativeNavigationFilter& filter);
+
+  [[nodiscard]] const Aid& aid() const { return aid_; }
+  [[nodiscard]] Aid& aid() { return aid_; }
+  [[nodiscard]] const BearingUpdate& last_update() const { return last_update_; }
+  [[nodiscard]] GpsTime last_accepted() const { return last_accepted_; }
+  [[nodiscard]] const BearingCounters& counters() const { return counters_; }
+
+ private:
+  void follow_burns(const filter::RelativeNavigationFilter& filter);
+  void activate_blocks(filter::RelativeNavigationFilter& filter) const;
+  void deactivate_blocks(filter::RelativeNavigationFilter& filter) const;
+  BearingEditStatus collect(const target_tracking::BearingMeasurement& bearing, const Vector3& sun_eci,
+                            filter::RelativeNavigationFilter& filter);
+  BearingEditStatus process_measurement(const target_tracking::BearingMeasurement& bearing, const Vector3& sun_eci,
+                                        filter::RelativeNavigationFilter& filter);
+  void adapt_noise(const target_tracking::BearingMeasurement& bearing, const filter::MeasurementBatch& batch,
+                   filter::RelativeNavigationFilter& filter);
+  void adapt_centroid_noise(const filter::RelativeNavigationFilter& filter);
+  void count_rejection(GpsTime time, filter::RelativeNavigationFilter& filter);
+
+  BearingSettings settings_;
+  Aid aid_;
+  measurements::BearingBatch batch_;
+  GpsTime burns_until_;  ///< impulses of the filter before this are in the batch
+  GpsTime last_accepted_;
+  GpsTime last_processed_;
+  int rejected_in_a_row_ = 0;
+  int rejected_in_excess_ = 0;  ///< rejections in excess of accepted ones, while others confirm the orbit
+  int agreeing_in_a_row_ = 0;   ///< while contradicting
+  std::size_t inflations_in_a_row_ = 0;
+  double centroid_scale_ =
+      1.0;  ///< factor on the variances of the centroid, adapted while receivers determine the orbit
+  BearingUpdate last_update_;
+  BearingCounters counters_;
+};
+
+}  // namespace vbar::fsw::measurements

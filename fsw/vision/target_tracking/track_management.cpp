@@ -1,0 +1,310 @@
+// Selection of the target's track, and whether its object in this image is certain: the decision of the tracker.
+
+#include <algorithm>
+
+#include "fsw/math/math.h"
+#include "fsw/vision/target_tracking/target_tracker.h"
+
+namespace vbar::fsw::target_tracking {
+
+namespace {
+
+constexpr double kAlone = 99.0;
+constexpr int kRivalHits = 3;
+constexpr int kOwnObjects = 2;
+constexpr int kDeposeAfter = 3;
+constexpr SlopeFloors kRegular{1e-6, 1e-8};  // keep a covariance regular
+
+}  // namespace
+
+// A detection that a better track shares is not one of this track: the bit of this image is cleared. Better: the
+// target's, else an established one, else the one of higher score.
+void TargetTracker::share_objects() {
+  std::array<const Hypothesis*, kMaxHypotheses> best{};
+  std::size_t tracks = 0;
+  for (std::size_t k = 0; k < count_; ++k) {
+    if (is_best_of_its_track(k)) best[tracks++] = &hypotheses_[k];
+  }
+  const auto is_better = [this](const Hypothesis& a, const Hypothesis& b) {
+    if (a.track == target_track_ || b.track == target_track_) return a.track == target_track_;
+    if (a.established != b.established) return a.established;
+    return a.score != b.score ? a.score > b.score : a.track < b.track;
+  };
+  work_.shared.fill(false);
+  for (std::size_t k = 0; k < count_; ++k) {
+    const Hypothesis& h = hypotheses_[k];
+    if (h.history[0] < 0) continue;
+    std::size_t own = 0;
+    while (own + 1 < tracks && best[own]->track != h.track) ++own;
+    for (std::size_t t = 0; t < tracks; ++t) {
+      const Hypothesis& other = *best[t];
+      if (other.track != h.track && other.history[0] == h.history[0] && is_better(other, *best[own]))
+        work_.shared[k] = true;
+    }
+  }
+  for (std::size_t k = 0; k < count_; ++k) {
+    Hypothesis& h = hypotheses_[k];
+    if (work_.shared[k]) h.recent &= ~1U;
+    if (h.history[0] >= 0 && hits_of(h.recent, settings_.confirm_images) >= settings_.confirm_hits &&
+        h.misfit < kMaxMisfit) {
+      h.established = true;
+    }
+  }
+}
+
+// The relative orbit of the target is distributed about the prediction, that of another satellite about zero with the
+// covariance of an unknown motion, which is so wide that only its determinant matters.
+void TargetTracker::compare_with_prediction() {
+  if (!work_.has_prediction) return;
+  for (std::size_t k = 0; k < count_; ++k) {
+    Hypothesis& hypothesis = hypotheses_[k];
+    const SlopeState state = slope_state(hypothesis.motion, work_.view, work_.bend, work_.bend_rate);
+    // Errors common to all images are changes of the relative orbit; as slopes and rates of one image, independent of
+    // each other, they would conceal a difference in the drift. The centre of brightness of a resolved body moves with
+    // the Sun, at the orbital rate, like an eccentricity or inclination.
+    const double floor = math::hypot(settings_.shape_floor, hypothesis.sigma);
+    const double unknown = settings_.motion.shape_sigma;
+    const Matrix5 unit = state.jacobian * state.jacobian.transpose();
+    const SlopeDistance as_target =
+        slope_distance(state.slopes - work_.prediction.slopes,
+                       state.covariance + work_.prediction.covariance + floor * floor * unit, kRegular);
+    const SlopeDistance as_other =
+        slope_distance(Vector5::Zero(), state.covariance + unknown * unknown * unit, kRegular);
+    hypothesis.distance = as_target.square;
+    hypothesis.identity = 0.5 * (as_other.log_determinant - as_target.log_determinant - as_target.square);
+  }
+}
+
+// A short track is another satellite's if it includes objects that the target's does not.
+bool TargetTracker::is_rival(const Hypothesis& h, const Hypothesis& target) const {
+  return h.track != target.track && (h.established || objects_of_its_own(h, target) >= kOwnObjects);
+}
+
+void TargetTracker::choose_target() {
+  // The track most likely to be the target, and the most likely of the others.
+  const Hypothesis* best = nullptr;
+  for (std::size_t k = 0; k < count_; ++k) {
+    const Hypothesis& h = hypotheses_[k];
+    if (h.hits < kRivalHits || !is_best_of_its_track(k)) continue;
+    if (best == nullptr || h.identity > best->identity) best = &h;
+  }
+  score_margin_ = 0.0;
+  ambiguous_ = false;
+  if (best == nullptr) {
+    target_track_ = 0;
+    return;
+  }
+  score_margin_ = kAlone;
+  for (std::size_t k = 0; k < count_; ++k) {
+    const Hypothesis& h = hypotheses_[k];
+    if (h.hits < kRivalHits || !is_best_of_its_track(k) || !is_rival(h, *best)) continue;
+    score_margin_ = std::min(score_margin_, best->identity - h.identity);
+  }
+
+  const Hypothesis* target = target_track_ == 0 ? nullptr : best_of(target_track_);
+  if (target == nullptr) {
+    target_track_ = 0;
+    deposing_images_ = 0;
+    const bool is_possible = best->distance < settings_.identity_gate;
+    ambiguous_ = is_possible && score_margin_ < settings_.identity_margin;
+    if (best->established && is_possible && !ambiguous_ && images_watched_ >= settings_.confirm_images) {
+      target_track_ = best->track;
+    }
+    return;
+  }
+  // The target track is kept unless the prediction contradicts it for some time. Only objects in the gate about the
+  // prediction continue it. In a narrow gate they are the target's: the motion of a track, which once an orbit errs by
+  // 1e-3 of the distance, contradicts no more.
+  const bool misplaced =
+      target->history[0] >= 0 && target->distance > settings_.identity_gate && !work_.is_prediction_narrow;
+  const bool beaten = best->track != target_track_ && best->established &&
+                      best->identity - target->identity > settings_.identity_margin;
+  deposing_images_ = misplaced || beaten ? deposing_images_ + 1 : 0;
+  if (deposing_images_ >= kDeposeAfter) {
+    target_track_ = 0;
+    deposing_images_ = 0;
+  }
+}
+
+// By how much a track's best hypothesis with the candidate in this image exceeds its best one without; no hypothesis
+// with it or none without: -kAlone or kAlone.
+double TargetTracker::claim(std::uint32_t track, std::int16_t candidate) const {
+  const Hypothesis* with = nullptr;
+  const Hypothesis* without = nullptr;
+  for (std::size_t k = 0; k < count_; ++k) {
+    const Hypothesis& h = hypotheses_[k];
+    if (h.track != track) continue;
+    const Hypothesis*& best = h.history[0] == candidate ? with : without;
+    if (best == nullptr || h.score > best->score) best = &h;
+  }
+  if (with == nullptr) return -kAlone;
+  return without == nullptr ? kAlone : with->score - without->score;
+}
+
+// The strongest association of another satellite's track with the target's candidate.
+double TargetTracker::rival_claim(const Hypothesis& target) const {
+  const std::int16_t candidate = target.history[0];
+  double strongest = -kAlone;
+  for (std::size_t k = 0; k < count_; ++k) {
+    const Hypothesis& h = hypotheses_[k];
+    if (h.history[0] != candidate || !is_rival(h, target)) continue;
+    strongest = std::max(strongest, claim(h.track, candidate));
+  }
+  return strongest;
+}
+
+TrackerOutput TargetTracker::report() {
+  TrackerOutput output;
+  output.hypotheses = static_cast<int>(count_);
+  output.hot_pixels = static_cast<int>(hot_pixels_.known());
+  output.score_margin = score_margin_;
+  for (std::size_t k = 0; k < count_; ++k) {
+    if (is_best_of_its_track(k)) ++output.tracks;
+  }
+  const Hypothesis* target = target_track_ == 0 ? nullptr : best_of(target_track_);
+  if (target == nullptr) {
+    output.state = ambiguous_ ? TrackerState::kAmbiguous : TrackerState::kSearching;
+    return output;
+  }
+  output.state = TrackerState::kCoasting;
+  output.residual_sigmas = math::sqrt(target->misfit);
+  const std::int16_t seen = target->history[0];
+  if (seen < 0) return output;
+
+  double agreeing = 0.0;
+  double all = 0.0;
+  for (std::size_t k = 0; k < count_; ++k) {
+    const Hypothesis& h = hypotheses_[k];
+    if (h.track != target_track_) continue;
+    const double weight = math::exp(std::max(h.score - target->score, -50.0));
+    all += weight;
+    if (h.history[0] == seen) agreeing += weight;
+  }
+  const bool certain = agreeing >= settings_.certainty * all;
+  // Either the target is visible and the rival is missed, or vice versa.
+  const double odds = math::log(settings_.certainty / (1.0 - settings_.certainty));
+  const bool own = claim(target_track_, seen) > rival_claim(*target) + odds;
+  const bool fits = target->misfit < kMaxMisfit && target->hits_since_gap >= settings_.hits_after_gap;
+  output.candidate = seen;
+  output.confirmed = certain && own && fits && deposing_images_ == 0;
+  if (output.confirmed) {
+    output.state = TrackerState::kTracking;
+  } else {
+    output.candidate = -1;
+  }
+  return output;
+}
+
+// Pruning of hypotheses: the part of the tracker that deletes them.
+
+namespace {
+
+constexpr double kDropScore = -7.0;
+// An unestablished track that was missed in this number of consecutive images is deleted.
+constexpr int kPatience = 3;
+constexpr std::size_t kScan = 5;        // images after which only one hypothesis of a track remains
+constexpr std::size_t kSame = 3;        // images that two hypotheses must share to be one
+constexpr double kSameDistance = 25.0;  // chi-square, 5 degrees of freedom: 1e-4
+
+}  // namespace
+
+void TargetTracker::erase_marked() {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < count_; ++k) {
+    if (work_.erased[k]) continue;
+    if (kept != k) hypotheses_[kept] = hypotheses_[k];
+    ++kept;
+  }
+  count_ = kept;
+}
+
+bool TargetTracker::is_best_of_its_track(std::size_t k) const {
+  for (std::size_t j = 0; j < count_; ++j) {
+    if (hypotheses_[j].track != hypotheses_[k].track || j == k) continue;
+    if (hypotheses_[j].score > hypotheses_[k].score || (hypotheses_[j].score == hypotheses_[k].score && j < k)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+const Hypothesis* TargetTracker::best_of(std::uint32_t track) const {
+  const Hypothesis* best = nullptr;
+  for (std::size_t k = 0; k < count_; ++k) {
+    const Hypothesis& hypothesis = hypotheses_[k];
+    if (hypothesis.track == track && (best == nullptr || hypothesis.score > best->score)) best = &hypothesis;
+  }
+  return best;
+}
+
+void TargetTracker::prune() {
+  work_.erased.fill(false);
+  for (std::size_t k = 0; k < count_; ++k) {
+    const Hypothesis& hypothesis = hypotheses_[k];
+    const int patience = hypothesis.established ? settings_.give_up_images : kPatience;
+    const bool hopeless = !hypothesis.established && hypothesis.score < kDropScore;
+    const Hypothesis* best = best_of(hypothesis.track);
+    // Hypotheses that separated from the track's best one more than kScan images ago.
+    const bool parted = best != nullptr && hypothesis.history[kScan - 1] != best->history[kScan - 1];
+    if (hopeless || parted || hypothesis.images_since_hit >= patience) work_.erased[k] = true;
+  }
+  erase_marked();
+
+  merge_accounts();
+  merge_tracks();
+}
+
+// Two hypotheses of a track that share the last images: the better one stays.
+void TargetTracker::merge_accounts() {
+  work_.erased.fill(false);
+  for (std::size_t a = 0; a < count_; ++a) {
+    for (std::size_t b = a + 1; b < count_ && !work_.erased[a]; ++b) {
+      const Hypothesis& left = hypotheses_[a];
+      const Hypothesis& right = hypotheses_[b];
+      if (work_.erased[b] || left.track != right.track || !share_recent(left, right, kSame)) continue;
+      work_.erased[left.score >= right.score ? b : a] = true;
+    }
+  }
+  erase_marked();
+}
+
+// Two tracks that have become equal: the target's stays, else an established one, else the better one. The other is a
+// duplicate that is maintained by the first one's objects.
+void TargetTracker::merge_tracks() {
+  std::array<std::size_t, kMaxHypotheses> best{};
+  std::size_t tracks = 0;
+  for (std::size_t k = 0; k < count_; ++k) {
+    if (is_best_of_its_track(k)) best[tracks++] = k;
+  }
+  std::array<bool, kMaxHypotheses> is_ghost{};
+  for (std::size_t a = 0; a < tracks; ++a) {
+    for (std::size_t b = a + 1; b < tracks && !is_ghost[a]; ++b) {
+      const Hypothesis& left = hypotheses_[best[a]];
+      const Hypothesis& right = hypotheses_[best[b]];
+      if (is_ghost[b] || !agree(left, right) || !moves_as(left, right)) continue;
+      bool left_stays = left.score >= right.score;
+      if (left.established != right.established) left_stays = left.established;
+      if (left.track == target_track_ || right.track == target_track_) left_stays = left.track == target_track_;
+      is_ghost[left_stays ? b : a] = true;
+    }
+  }
+  work_.erased.fill(false);
+  for (std::size_t t = 0; t < tracks; ++t) {
+    if (!is_ghost[t]) continue;
+    const std::uint32_t ghost = hypotheses_[best[t]].track;
+    for (std::size_t k = 0; k < count_; ++k) {
+      if (hypotheses_[k].track == ghost) work_.erased[k] = true;
+    }
+  }
+  erase_marked();
+}
+
+bool TargetTracker::moves_as(const Hypothesis& a, const Hypothesis& b) const {
+  const SlopeState left = slope_state(a.motion, work_.view, work_.bend, work_.bend_rate);
+  const SlopeState right = slope_state(b.motion, work_.view, work_.bend, work_.bend_rate);
+  // The floors only keep the sum regular.
+  return slope_distance(left.slopes - right.slopes, left.covariance + right.covariance, {1e-6, 1e-8}).square <
+         kSameDistance;
+}
+
+}  // namespace vbar::fsw::target_tracking

@@ -1,9 +1,0 @@
-#pragma once
-
-#include "hil_drivers/testbed.h"
-
-namespace vbar::external {
-
-extern const testbeds::TestbedKind kExternal;
-
-}  // namespace vbar::external

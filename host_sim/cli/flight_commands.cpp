@@ -1,0 +1,99 @@
+// vbar run: a mission file, a flight computer, a run folder.
+
+#include <ctime>
+#include <memory>
+#include <optional>
+
+#include <fmt/chrono.h>
+#include <fmt/core.h>
+
+#include "host_sim/cli/commands.h"
+#include "host_sim/cli/recorded_flight.h"
+#include "host_sim/cli/verdicts.h"
+#include "host_sim/installation/sensor_kinds.h"
+#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
+#include "host_sim/mission/load.h"
+#include "host_sim/mission/mission_document.h"
+#include "host_sim/report/propagation_folder.h"
+#include "host_sim/simulation/exit_codes.h"
+#include "host_sim/simulation/run_control.h"
+#include "host_sim/simulation/run_truth.h"
+#include "host_sim/truth/earth/time_scales.h"
+
+namespace vbar::app {
+
+using report::RunFolder;
+
+int run_command(const RunOptions& options) {
+  const mission::Mission mission =
+      sensors::load_mission(mission::find_mission(options.mission, sensors::installation()), options.overrides);
+  const FlightOrder order{mission, mission::whole_mission_text(mission.file),
+                          mission::with_absolute_files(options.overrides, mission), options.quiet};
+  catch_stop_signals();
+  const std::unique_ptr<AssembledMission> assembled = assemble(mission, !options.check);
+  if (options.check) {
+    if (!options.quiet) {
+      report_data(assembled->data_notes());
+      fmt::print("{}: can be flown\n", options.mission.string());
+    }
+    return kDone;
+  }
+  report::RunRecord record = record_at_start(order);
+  RunFolder folder(options.out.empty() ? report::default_run_folder(mission.name, mission.seed) : options.out,
+                   record.summary, options.force ? RunFolder::Existing::kReplace : RunFolder::Existing::kRefuse,
+                   sensors::extensions());
+  const std::optional<std::string> trouble = fly_into(folder, order, *assembled, record);
+  report_flight(folder.path(), folder.path(), order, record, trouble);
+  if (!options.quiet) print_own_limits(folder.path());
+  return exit_code_of(record, trouble, folder.path(), options.quiet);
+}
+
+// vbar propagate: a mission file, its truth alone, an ephemeris of every spacecraft.
+
+namespace {
+
+/// Returns the time of this computer's clock, to a second.
+fsw::GpsTime now() {
+  const std::time_t seconds = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  return truth::gps_from_utc(fmt::format("{:%Y-%m-%dT%H:%M:%S}Z", utc));
+}
+
+}  // namespace
+
+int propagate_command(const PropagateOptions& options) {
+  const mission::Mission mission =
+      sensors::load_mission(mission::find_mission(options.mission, sensors::installation()), options.overrides);
+  if (mission.truth_source != mission::kTruthModel)
+    throw Refused(fmt::format("truth.source: found \"{}\"; accepted: model, which is what vbar propagate propagates",
+                              mission.truth_source));
+  Propagation propagation = [&] {
+    try {
+      return Propagation(mission, mission::data_directory());
+    } catch (const std::exception& error) {
+      throw Refused(error.what());  // nothing is written yet
+    }
+  }();
+  report::PropagationFolder folder(options.out.empty() ? report::default_propagation_folder(mission.name) : options.out,
+                                   mission.name);
+  const report::OemFile::Span span{mission.start_time(), mission.end_time(), propagation.sampling_times().size(),
+                                   now()};
+  folder.start_files(propagation.names(), options.oem ? &span : nullptr);
+  catch_stop_signals();
+
+  report::PropagationRecord record;
+  {
+    ProgressLine progress(mission.duration, options.quiet);
+    record = propagation.run([&](std::size_t k, const report::EphemerisRow& row) { folder.append(k, row); },
+                             [&](fsw::Duration simulated) { progress.update(simulated); }, stop_requested);
+  }
+  folder.finish(record);
+  if (!options.quiet) fmt::print("{}ephemeris  {}\n", report::propagation_table(record), folder.path().string());
+  if (record.complete) return kDone;
+  fmt::print(stderr, "vbar: {}: propagation incomplete: {}\n", folder.path().string(), record.incomplete_reason);
+  return record.incomplete_reason == Propagation::kInterruption ? kInterrupted : kFailed;
+}
+
+}  // namespace vbar::app

@@ -1,0 +1,89 @@
+// vbar report: one run, or several side by side.
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "host_sim/cli/commands.h"
+#include "host_sim/cli/verdicts.h"
+#include "host_sim/files/output_file.h"
+#include "host_sim/installation/sensor_kinds.h"
+#include "host_sim/report/run_folder.h"
+#include "host_sim/report/sections/comparison.h"
+#include "host_sim/report/sections/html_report.h"
+#include "host_sim/report/summarise.h"
+#include "host_sim/report/verdict.h"
+#include "host_sim/sensors/installed_testbeds.h"
+#include "host_sim/simulation/exit_codes.h"
+
+namespace vbar::app {
+
+namespace {
+
+/// A run as its tables have it, figures computed from them.
+report::RunRecord evaluated_run(const std::filesystem::path& folder) {
+  report::RunRecord record = report::read_run(folder, sensors::extensions());
+  for (const report::SourceFigures& source : record.summary.sources) testbeds::require_driver(source.kind);
+  for (const std::string& note : record.reading_notes) fmt::print(stderr, "vbar: {}\n", note);
+  report::evaluate(record);
+  const std::string health = record.summary.health ? report::health_line(*record.summary.health) : "";
+  if (!health.empty()) fmt::print("flight software: {}\n", health);
+  return record;
+}
+
+int report_one(const std::filesystem::path& folder) {
+  const report::RunRecord record = evaluated_run(folder);
+  fmt::print("{}report  {}\n", report::waypoint_table(record), report::write_html_report(folder, record).string());
+  if (record.summary.complete && !record.summary.verdict_reason.empty())
+    fmt::print("verdict {}\n", report::verdict_line(record.summary));
+  return 0;
+}
+
+}  // namespace
+
+int report_command(const ReportOptions& options) {
+  const auto& [run_folders, out, fail_if_different] = options;
+  if (run_folders.size() == 1 && out.empty()) return report_one(run_folders.front());
+  std::vector<report::ComparedRun> runs;
+  const std::vector<std::string> names = report::run_names(run_folders);
+  for (std::size_t k = 0; k < names.size(); ++k) runs.push_back({names[k], evaluated_run(run_folders[k])});
+  const std::filesystem::path file = out.empty() ? run_folders.front().parent_path() / "comparison.html" : out;
+  report::write_html_comparison(file, runs);
+  fmt::print("{}report  {}\n", report::comparison_table(runs), file.string());
+  const auto same_as_first = [&](const report::ComparedRun& run) {
+    return report::same_outputs(runs.front().record.summary, run.record.summary);
+  };
+  return fail_if_different && !std::ranges::all_of(runs, same_as_first) ? kDifferent : kDone;
+}
+
+// vbar check: the limits of a mission against runs of it.
+
+namespace {
+
+namespace fs = std::filesystem;
+
+int print_numbers(const std::vector<fs::path>& run_folders) {
+  for (const fs::path& folder : run_folders)
+    for (const auto& [key, value] : campaign::numbers_of(summary_json_of(folder)))
+      fmt::print("{} = {:g}\n", key, value);
+  return kDone;
+}
+
+}  // namespace
+
+int check_command(const CheckOptions& options) {
+  if (options.numbers) return print_numbers(options.run_folders);
+  bool passed = true;
+  std::vector<check::JunitSuite> suites;
+  for (const fs::path& folder : options.run_folders) {
+    CheckedRun run = checked_run(folder, options.limits);
+    passed = passed && run.passed;
+    suites.push_back(std::move(run.suite));
+  }
+  if (!options.junit.empty()) files::replace_text_file(options.junit, check::junit_xml(suites));
+  return passed ? kDone : kLimitMissed;
+}
+
+}  // namespace vbar::app

@@ -1,0 +1,117 @@
+#include "host_sim/installation/navigation_telecommands.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "fsw/math/math.h"
+#include "fsw/orbit/mean_osculating.h"
+#include "fsw/orbit/roe.h"
+#include "host_sim/engine/random_stream.h"
+
+namespace vbar::sensors {
+namespace {
+
+using fsw::orbit::QnsElements;
+using mission::Mission;
+using mission::Spacecraft;
+using Use = vbar::navigation_configuration;
+
+constexpr const char* kNoOrbit =
+    "the target's a-priori state is not an orbit: the sigmas of the section apriori are too large";
+
+QnsElements mean_of(const fsw::orbit::CartesianState& state) {
+  const auto osculating = fsw::orbit::qns_from_cartesian(state);
+  if (!osculating.ok()) throw std::runtime_error(kNoOrbit);
+  const auto mean = fsw::orbit::mean_from_osculating(osculating.value());
+  if (!mean.ok()) throw std::runtime_error(kNoOrbit);
+  return mean.value();
+}
+
+/// Off by what the seed draws.
+fsw::Vector6 drawn_roe(const QnsElements& chief_mean, const fsw::orbit::CartesianState& target_state,
+                       const Mission& mission, const Spacecraft& servicer) {
+  const fsw::Vector6& sigma_a_roe_m = mission.navigation.apriori_sigma_a_roe_m;
+  fsw::Vector6 roe = fsw::orbit::roe_from_qns(chief_mean, mean_of(target_state));
+  engine::RandomStream random(mission.seed, servicer.name + "/target_apriori");
+  for (Eigen::Index k = 0; k < 6; ++k)
+    roe(k) += sigma_a_roe_m(k) / mission.guidance.reference_semi_major_axis_m * random.normal();
+  return roe;
+}
+
+constexpr std::int32_t kCamera = std::int32_t{Use::kUseBearings} + Use::kUseKeypoints;
+
+/// The spacecraft that a camera navigates to; empty: no camera does.
+std::string observed_by_camera(const Spacecraft& servicer) {
+  const auto camera = std::ranges::find_if(
+      servicer.sensors, [](const mission::Sensor& sensor) { return (sensor.settings->navigation & kCamera) != 0; });
+  return camera == servicer.sensors.end() ? std::string() : camera->settings->observed;
+}
+
+}  // namespace
+
+std::int32_t sources_of(const Spacecraft& servicer) {
+  std::int32_t sources = 0;
+  for (const mission::Sensor& sensor : servicer.sensors) sources |= sensor.settings->navigation;
+  return (sources & Use::kUseIdeal) != 0 ? std::int32_t{Use::kUseIdeal} : sources;
+}
+
+vbar::navigation_configuration navigation_configuration_of(const Mission& mission, const Spacecraft& servicer) {
+  vbar::navigation_configuration configuration = mission.navigation.configuration;
+  configuration.sources = sources_of(servicer);
+  return configuration;
+}
+
+vbar::earth_configuration earth_configuration_of(const Mission& mission,
+                                                 const truth::EarthOrientationSeries& orientation) {
+  vbar::earth_configuration configuration{};
+  // GPS time is 19 s behind TAI. A prediction is rounded to what the IERS bulletins print: 10 us and 10 uas.
+  constexpr double kGpsMinusTai_s = -19.0;
+  constexpr double kLookAhead_s = 3600.0;
+  const truth::EarthOrientation now = orientation.at(mission.start_time());
+  const truth::EarthOrientation later = orientation.at(mission.start_time(), kLookAhead_s);
+  configuration.epoch_ns = mission.start_time().ns;
+  configuration.ut1_minus_gps_s = 1e-5 * std::round(1e5 * (now.ut1_minus_tai_s - kGpsMinusTai_s));
+  configuration.ut1_rate = (later.ut1_minus_tai_s - now.ut1_minus_tai_s) / kLookAhead_s;
+  constexpr double kTenMicroarcseconds = 1e-5 * fsw::math::kPi / 648000.0;
+  configuration.pole_x = kTenMicroarcseconds * std::round(now.pole_x / kTenMicroarcseconds);
+  configuration.pole_y = kTenMicroarcseconds * std::round(now.pole_y / kTenMicroarcseconds);
+  return configuration;
+}
+
+vbar::target_apriori target_apriori_of(const Mission& mission, const Spacecraft& servicer,
+                                       const fsw::orbit::CartesianState& servicer_state,
+                                       const fsw::orbit::CartesianState& target_state) {
+  const QnsElements chief = mean_of(servicer_state);
+  const fsw::Vector6 roe = drawn_roe(chief, target_state, mission, servicer);
+  vbar::target_apriori apriori{};
+  std::ranges::copy(mission.navigation.apriori_sigma_a_roe_m, apriori.sigma_a_roe_m);
+  if (mission.navigation.apriori == mission::Apriori::kRoe) {
+    apriori.kind = vbar::target_apriori::kKindRoe;
+    const fsw::Vector6 a_roe_m = chief.a * roe;
+    std::ranges::copy(a_roe_m, apriori.mean_a_roe_m);
+    return apriori;
+  }
+  const auto osculating = fsw::orbit::osculating_from_mean(fsw::orbit::qns_from_roe(chief, roe));
+  if (!osculating.ok()) throw std::runtime_error(kNoOrbit);
+  const auto state = fsw::orbit::cartesian_from_qns(osculating.value());
+  if (!state.ok()) throw std::runtime_error(kNoOrbit);
+  apriori.kind = vbar::target_apriori::kKindOrbit;
+  std::ranges::copy(state.value().position_eci, apriori.position_eci);
+  std::ranges::copy(state.value().velocity_eci, apriori.velocity_eci);
+  return apriori;
+}
+
+void add_navigation_telecommands(const TelecommandContext& context, Telecommands& telecommands) {
+  const std::int32_t sources = sources_of(context.servicer);
+  if (sources == 0 || (sources & Use::kUseIdeal) != 0) return;
+  telecommands.add(navigation_configuration_of(context.mission, context.servicer));
+  telecommands.add(earth_configuration_of(context.mission, context.earth_orientation));
+  telecommands.add(context.mission.navigation.thruster);
+  const std::string observed = observed_by_camera(context.servicer);
+  if (observed.empty() || context.mission.navigation.apriori == mission::Apriori::kNone) return;
+  telecommands.add(target_apriori_of(context.mission, context.servicer, context.state_at_start(context.servicer.name),
+                                     context.state_at_start(observed)));
+}
+
+}  // namespace vbar::sensors

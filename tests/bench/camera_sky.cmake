@@ -1,2 +1,0 @@
-target_sources(vbar_bench PRIVATE camera_sky_bench.cpp)
-target_link_libraries(vbar_bench PRIVATE vbar_host_camera)

@@ -1,2 +1,0 @@
-target_sources(vbar_bench PRIVATE campaign_report_bench.cpp ${PROJECT_SOURCE_DIR}/tests/unit/host_sim/campaign_report/synthetic_campaign.cpp)
-target_link_libraries(vbar_bench PRIVATE vbar_host_campaign_report)

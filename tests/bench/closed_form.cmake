@@ -1,2 +1,0 @@
-target_sources(vbar_bench PRIVATE closed_form_bench.cpp)
-target_link_libraries(vbar_bench PRIVATE vbar_fsw_control)

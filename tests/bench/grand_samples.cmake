@@ -1,2 +1,0 @@
-target_sources(vbar_bench PRIVATE grand_samples_bench.cpp)
-target_link_libraries(vbar_bench PRIVATE vbar_hil_grand_samples)

@@ -1,8 +1,0 @@
-target_sources(vbar_bench PRIVATE lambda_bench.cpp)
-target_link_libraries(vbar_bench PRIVATE vbar_fsw_gnss)
-find_library(VBAR_RTKLIB RTKLib)
-if(VBAR_RTKLIB)
-  target_sources(vbar_bench PRIVATE ${PROJECT_SOURCE_DIR}/tests/peers/lambda/rtklib_lambda.cpp)
-  target_link_libraries(vbar_bench PRIVATE ${VBAR_RTKLIB})
-  set_source_files_properties(lambda_bench.cpp PROPERTIES COMPILE_DEFINITIONS VBAR_HAVE_RTKLIB)
-endif()

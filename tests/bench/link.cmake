@@ -1,3 +1,0 @@
-target_sources(vbar_bench PRIVATE link_bench.cpp)
-target_link_libraries(vbar_bench PRIVATE vbar_pil_bridge)
-add_dependencies(vbar_bench vbar_flight_echo vbar_echo_article_shared)

@@ -1,2 +1,0 @@
-target_sources(vbar_bench PRIVATE navigation_bench.cpp)
-target_link_libraries(vbar_bench PRIVATE vbar_fsw_sources)

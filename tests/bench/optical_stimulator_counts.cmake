@@ -1,2 +1,0 @@
-target_sources(vbar_bench PRIVATE optical_stimulator_counts_bench.cpp)
-target_link_libraries(vbar_bench PRIVATE vbar_hil_optical_stimulator_counts)

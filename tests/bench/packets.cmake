@@ -1,7 +1,0 @@
-target_sources(vbar_bench PRIVATE packets_bench.cpp)
-target_link_libraries(vbar_bench PRIVATE vbar_fsw_packets vbar_fsw_link)
-find_package(ZLIB QUIET)
-if(ZLIB_FOUND)
-  set_source_files_properties(packets_bench.cpp PROPERTIES COMPILE_DEFINITIONS VBAR_HAVE_ZLIB)
-  target_link_libraries(vbar_bench PRIVATE ZLIB::ZLIB)
-endif()

@@ -1,2 +1,0 @@
-target_sources(vbar_bench PRIVATE recorded_image_bench.cpp)
-target_link_libraries(vbar_bench PRIVATE vbar_host_camera vbar_host_report)

@@ -1,8 +1,0 @@
-target_sources(vbar_bench PRIVATE tron_placement_bench.cpp)
-target_link_libraries(vbar_bench PRIVATE vbar_hil_tron_placement vbar_host_mission)
-find_package(orocos_kdl QUIET)
-if(orocos_kdl_FOUND)
-  target_include_directories(vbar_bench SYSTEM PRIVATE ${orocos_kdl_INCLUDE_DIRS})
-  target_link_libraries(vbar_bench PRIVATE ${orocos_kdl_LIBRARIES})
-  set_source_files_properties(tron_placement_bench.cpp PROPERTIES COMPILE_DEFINITIONS VBAR_HAVE_KDL)
-endif()

@@ -1,3 +1,0 @@
-target_sources(vbar_bench PRIVATE tron_robots_bench.cpp)
-target_link_libraries(vbar_bench PRIVATE vbar_hil_tron_bench_controller vbar_hil_tron_eki_client vbar_hil_tron_robot
-  vbar_hil_tron_rsi_client)

@@ -1,2 +1,0 @@
-target_sources(vbar_bench PRIVATE tron_scene_bench.cpp)
-target_link_libraries(vbar_bench PRIVATE vbar_hil_tron_bench_scene)
