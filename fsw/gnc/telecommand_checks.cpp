@@ -75,9 +75,10 @@ bool is_valid(const fault_command& /*command*/) {
   return true;
 }
 
-namespace {
-
 using measurements::is_valid;
+using navigation::is_valid;
+
+namespace {
 
 /// Tests whether an image feeds one measurement source: of a camera for bearings and keypoints the exposure decides
 /// which, and there are two.

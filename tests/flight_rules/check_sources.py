@@ -19,7 +19,7 @@ HEADERS = set("""
 FOLDER_HEADERS = {
     "boards/zynq7000": {"atomic"},
     "fsw/math/newlib": {"math.h", "sys/types.h"},
-    "fsw/network": {"arm_neon.h"},
+    "fsw/vision/pose": {"arm_neon.h"},
     "fsw/packets": None,
 }
 GENERATED_HEADER = re.compile(r"vbar/(\w+\.hpp|fields\.h)|lcm/lcm_coretypes\.h")
