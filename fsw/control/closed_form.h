@@ -7,13 +7,8 @@
 // over the grid and half orbits from both ends of the window finds four; the normal impulse is distributed over the
 // tangential ones, so that |T| and |N| add in quadrature; and the coupling by J2 and eccentricity is iterated away.
 
-#include <string_view>
-
-#include <vbar/gnc_configuration.hpp>
-#include <vbar/telemetry_control.hpp>
-#include <vbar/waypoint.hpp>
-
 #include "fsw/control/plan.h"
+#include "fsw/packets/message_traits.h"
 
 namespace vbar::fsw::control {
 
@@ -36,8 +31,8 @@ Result<Plan> solve_closed_form(const ControlProblem& problem, const ClosedFormSe
 /// The entry of the solver list (solver_list.h).
 struct ClosedForm {
   static constexpr Solver kId{waypoint::kSolverClosedForm};
-  static constexpr std::string_view kName = "closed_form";
-  static constexpr std::string_view kDescription =
+  static constexpr const char* kName = "closed_form";
+  static constexpr const char* kDescription =
       "the closed-form solver for near-circular orbits (Chernick and D'Amico 2018)";
   /// Largest mean eccentricity: beyond it terms of the order of the eccentricity, which are removed by iteration,
   /// dominate.

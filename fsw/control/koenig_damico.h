@@ -3,14 +3,10 @@
 // J2 dynamics of mean ROE.
 
 #include <array>
-#include <string_view>
-
-#include <vbar/gnc_configuration.hpp>
-#include <vbar/telemetry_control.hpp>
-#include <vbar/waypoint.hpp>
 
 #include "fsw/control/plan.h"
 #include "fsw/control/primer.h"
+#include "fsw/packets/message_traits.h"
 
 namespace vbar::fsw::control {
 
@@ -44,8 +40,8 @@ Result<Plan> solve_koenig_damico(const ControlProblem& problem, const KoenigDami
 /// The entry of the solver list (solver_list.h).
 struct KoenigDamico {
   static constexpr Solver kId{waypoint::kSolverKoenigDamico};
-  static constexpr std::string_view kName = "koenig_damico";
-  static constexpr std::string_view kDescription =
+  static constexpr const char* kName = "koenig_damico";
+  static constexpr const char* kDescription =
       "the primer-vector solver on a uniform grid of times (Koenig and D'Amico)";
   /// Largest mean eccentricity: beyond it the time grid is too coarse about the perigee.
   static constexpr double kMaxEccentricity = 0.11;

@@ -4,13 +4,9 @@
 // a*ROE per m/s. It always returns a solution at constant cost: the last fallback. Not fuel-optimal.
 
 #include <cstddef>
-#include <string_view>
-
-#include <vbar/gnc_configuration.hpp>
-#include <vbar/telemetry_control.hpp>
-#include <vbar/waypoint.hpp>
 
 #include "fsw/control/plan.h"
+#include "fsw/packets/message_traits.h"
 
 namespace vbar::fsw::control {
 
@@ -38,8 +34,8 @@ Result<Plan> solve_least_squares(const ControlProblem& problem, const LeastSquar
 /// The entry of the solver list (solver_list.h).
 struct LeastSquares {
   static constexpr Solver kId{waypoint::kSolverLeastSquares};
-  static constexpr std::string_view kName = "least_squares";
-  static constexpr std::string_view kDescription = "the least-squares solver on a uniform grid of times";
+  static constexpr const char* kName = "least_squares";
+  static constexpr const char* kDescription = "the least-squares solver on a uniform grid of times";
   /// Largest mean eccentricity, as that of the closed form.
   static constexpr double kMaxEccentricity = 0.06;
   static constexpr auto kStatus = &telemetry_control::least_squares_status;

@@ -2,6 +2,7 @@
 
 #include <type_traits>
 
+#include "fsw/control/solver_list.h"
 #include "fsw/math/math.h"
 #include "fsw/measurements/bearings/bearing_source.h"
 #include "fsw/measurements/calibrated_camera.h"

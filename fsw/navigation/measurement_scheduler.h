@@ -74,7 +74,7 @@ class MeasurementScheduler {
 
   /// Sends the telemetry of the sources in use, and an event of each change of the state of any source.
   void report(messaging::Outbox& outbox, std::int64_t step, GpsTime now, const messaging::Inbox& inbox) const;
-  /// Forgets the changes of state that were reported.
+  /// Discards the changes of state that were reported.
   void forget_transitions();
 
  private:

@@ -31,7 +31,7 @@ STD_NAMES = set("""
     min max clamp swap copy copy_n fill fill_n equal all_of any_of none_of sort lower_bound upper_bound
     memcpy memset memmove memcmp strlen strcmp strchr strrchr
     move forward exchange is_same_v is_array_v is_class_v is_floating_point_v is_trivially_copyable_v has_unique_object_representations_v is_standard_layout_v integral unsigned_integral same_as
-    conditional_t declval extent_v tuple_cat
+    conditional_t declval extent_v tuple_cat tuple_element_t index_sequence make_index_sequence
     strong_ordering partial_ordering
 """.split())
 FOLDER_STD_NAMES = {
