@@ -1,6 +1,8 @@
 """What flight code calls, by its object code: each other, and what every target has.
 
-Usage: check_objects.py NM ARCHIVE... Exit code 77: an archive is not there. Text can hide a call (in a macro, in a template of Eigen); an undefined symbol cannot.
+Usage: check_objects.py NM ARCHIVE...                  Exit code 77: an archive is not there.
+       check_objects.py NM --below FOLDER NAME...      archives by their names, anywhere in the build folder
+ Text can hide a call (in a macro, in a template of Eigen); an undefined symbol cannot.
 """
 
 import pathlib
@@ -65,6 +67,9 @@ def strangers(listings):
 
 def main():
     nm, archives = sys.argv[1], sys.argv[2:]
+    if archives[0] == "--below":
+        below = {path.name: str(path) for path in pathlib.Path(archives[1]).rglob("*.a")}
+        archives = [below.get(name, name) for name in archives[2:]]
     if absent := [a for a in archives if not pathlib.Path(a).exists()]:
         print(f"not built: {' '.join(absent)}")
         sys.exit(77)

@@ -50,7 +50,7 @@ class Mutate(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    if not (BUILD / "tests/unit/fsw/orbit/fsw_orbit_test").exists():
+    if not (BUILD / "tests/unit/fsw_orbit_test").exists():
         print("fsw_orbit_test is not built")
         sys.exit(77)  # skipped
     unittest.main(argv=sys.argv[:1])
