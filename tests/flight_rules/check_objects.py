@@ -2,7 +2,7 @@
 
 Usage: check_objects.py NM ARCHIVE...                  Exit code 77: an archive is not there.
        check_objects.py NM --below FOLDER NAME...      archives by their names, anywhere in the build folder
- Text can hide a call (in a macro, in a template of Eigen); an undefined symbol cannot.
+Text can hide a call (in a macro, in a template of Eigen); an undefined symbol cannot.
 """
 
 import pathlib

@@ -12,7 +12,9 @@ namespace {
 
 using fsw::Vector2;
 
-constexpr int kWhiteReference = 1;
+// Cells of the strip.
+constexpr int kBlackReference = 0, kWhiteReference = 1, kNumberFirst = 2, kCheckFirst = kNumberFirst + kNumberBits;
+constexpr int kMarkFirst = kCheckFirst + kCheckBits;
 
 /// The cell of a place in the strip, from the upper left corner of its first pixel; -1: none.
 int cell_at(const Vector2& place, int width) {
@@ -64,8 +66,6 @@ void FrameStrip::draw(std::uint16_t frame, Picture& picture) const {
 
 namespace {
 
-constexpr int kBlackReference = 0, kWhiteReference = 1, kNumberFirst = 2, kCheckFirst = kNumberFirst + kNumberBits;
-constexpr int kMarkFirst = kCheckFirst + kCheckBits;
 constexpr int kCellMargin = 5;  // px of a cell left out: neighbours and the halo
 
 /// CRC-4 of ITU-T G.704, x^4 + x + 1, begun with ones so that a strip of zeros is not valid.
