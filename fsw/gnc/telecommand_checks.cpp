@@ -26,7 +26,7 @@ bool is_usable_span(double s) {
   return s > 0.0 && s <= seconds(messaging::kLongestSpan);
 }
 
-bool is_valid(const waypoint& w) {
+bool is_valid_waypoint(const waypoint& w) {
   if (!messaging::is_usable(GpsTime{w.gps_time_ns}) || !control::is_solver(w.control_mode)) return false;
   for (const double a_roe : w.a_roe_m) {
     if (math::abs(a_roe) > kLargestARoe) return false;
@@ -41,7 +41,7 @@ bool is_valid(const waypoint_table& table) {
   if (table.count < 1 || table.count > kMaxWaypoints) return false;
   if (table.reference_semi_major_axis_m < 6.4e6 || table.reference_semi_major_axis_m > 1e9) return false;
   for (std::int32_t k = 0; k < table.count; ++k) {
-    if (!is_valid(table.waypoints[k])) return false;
+    if (!is_valid_waypoint(table.waypoints[k])) return false;
     if (k > 0 && table.waypoints[k].gps_time_ns <= table.waypoints[k - 1].gps_time_ns) return false;
   }
   return true;
