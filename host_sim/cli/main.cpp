@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -287,6 +288,7 @@ int execute(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   open_standard_descriptors();
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is an error with a sentence, like a full disk
   keep_output_until_end();
   vbar::testbeds::install(vbar::testbeds::drivers());
   return execute(argc, argv);
