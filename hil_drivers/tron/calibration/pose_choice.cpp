@@ -190,7 +190,7 @@ std::vector<Posture> choose_postures(const TestbedDesign& bench, const LensCalib
 namespace {
 
 constexpr int kTries = 60000;
-constexpr double kLimitMargin_rad = 0.05, kImageMargin_px = 15.0;
+constexpr double kLimitMargin_rad = 0.05;
 /// Share of the irradiance that a source gives to an area there that faces it: wanted first, and at last.
 constexpr std::array kWanted{0.6, 0.35, 0.15};
 
