@@ -1,6 +1,6 @@
 /* A range finder of the user's own in C: the distance to the target once a second, without errors. The interface is
- * that of flight software (fsw/messaging/vbar_gnc.h), whose program for a host brings the exchange with a run: the inputs of
- * a step are the truth in place of measurements, and its outputs are measurements in place of commands. */
+ * that of flight software (fsw/messaging/vbar_gnc.h), whose program for a host brings the exchange with a run: the
+ * inputs of a step are the truth in place of measurements, and its outputs are measurements in place of commands. */
 #include <stdbool.h>
 #include <string.h>
 
