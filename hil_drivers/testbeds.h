@@ -15,7 +15,7 @@ namespace vbar::testbeds {
 
 // Testbeds whose drivers need libraries of displays and cameras. A program has these drivers if it links the object
 // vbar_hil_benches (optional_testbeds.cpp), as vbar_hil does; otherwise the library of testbeds gives it stand-ins
-// (bench_kinds_elsewhere.cpp).
+// (optional_testbeds_missing.cpp).
 
 [[nodiscard]] std::span<const TestbedKind* const> optional_testbeds();
 

@@ -45,7 +45,7 @@ struct FlightComputerOptions {
   /// in_process: the test article (`linked_test_article()`), unless `library` names a shared library.
   std::shared_ptr<const TestArticle> article;
   std::string library;
-  /// A library runs in a child process (guarded_process.h), which is given up if a step takes longer.
+  /// A library runs in a child process (test_article.h), which is given up if a step takes longer.
   std::chrono::milliseconds library_step_limit{60'000};
 
   /// host_process, zynq_qemu, zynq_linux_qemu: the program or image to run. Empty: the one built beside

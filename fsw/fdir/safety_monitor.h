@@ -2,7 +2,7 @@
 // The safety monitor: a second judgement of the approach that can only demand the retreat.
 //
 // It uses images, the attitude, the codes of both receivers, the commanded and the reported burns. Its range and range
-// rate (range_filter.h), its record of burns and its timer of outages are its own: no estimate of navigation enters
+// rate, its record of burns and its timer of outages are its own: no estimate of navigation enters
 // them. The range that navigation states is compared with the monitor's own, and selects when to compare.
 //
 // It shares with navigation (fsw/fdir/safety_monitor_inputs.h): the inbox and its image assembly, the decoded epochs of

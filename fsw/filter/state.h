@@ -8,8 +8,9 @@
 //
 // One estimate serves all sensors: each block is inactive (variance zero, no influence, no cost behind the last active
 // one) until a source needs it. The blocks at the head are nonlinear and propagated by sigma points; all others enter
-// linearly. The servicer's absolute orbit is a separate estimate (own_orbit.h): a relative measurement observes it only
-// by its error divided by the semi-major axis, 3e-7 of the separation, so that the joint covariance is block-diagonal.
+// linearly. The servicer's absolute orbit is a separate estimate (absolute_orbit.h): a relative measurement observes it
+// only by its error divided by the semi-major axis, 3e-7 of the separation, so that the joint covariance is
+// block-diagonal.
 
 #include "fsw/estimation/estimate.h"
 #include "fsw/estimation/gauss_markov.h"

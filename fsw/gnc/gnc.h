@@ -99,7 +99,7 @@ class Gnc : private GncState {
   void check_retreat();
   void check_hold();
 
-  // Commands (gnc_commands.cpp).
+  // Commands (commands.cpp).
   void command_maneuvers();
   void point_camera();
   void command_exposures();
@@ -107,7 +107,7 @@ class Gnc : private GncState {
   [[nodiscard]] Vector3 command_for(const Vector3& dv_rtn) const;
   [[nodiscard]] std::optional<measurements::Pointing> pointing_to_target() const;
 
-  // Telemetry (gnc_telemetry.cpp).
+  // Telemetry (telemetry.cpp).
   void report_navigation(messaging::Outbox& outbox) const;
   void report_control(messaging::Outbox& outbox) const;
   void report_safety(messaging::Outbox& outbox) const;

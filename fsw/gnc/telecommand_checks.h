@@ -7,7 +7,7 @@
 
 namespace vbar::fsw::gnc {
 
-// The checks of navigation are beside their conversion: trunk_configuration.h, and the folders of fsw/sources.
+// The checks of navigation are beside their conversion: filter_configuration.h, and the rooms of fsw/measurements.
 
 /// Accepts one to sixteen waypoints in order of time, within the domain of the relative-orbit models.
 [[nodiscard]] bool is_valid(const waypoint_table& table);

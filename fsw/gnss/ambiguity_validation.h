@@ -2,7 +2,7 @@
 // Selection of the float ambiguities that may be held to integers. Integers are accepted if
 //   the model is strong:  bootstrapping succeeds with the required probability (Teunissen 1998);
 //   they are distinct:    the second-best are farther by the ratio that keeps wrong fixes below kFixFailureRate
-//                         (ratio_threshold.h), and by a fixed ratio against covariances that are too small;
+//                        , and by a fixed ratio against covariances that are too small;
 //   they fit:             their squared distance from the float solution is plausible for a chi-square variable.
 // If not all can be accepted, the worst one is left out and the others are tried again, down to a smallest useful set.
 // More than kMaxAmbiguities are reduced first to the most precise given each other; once these are held, the covariance

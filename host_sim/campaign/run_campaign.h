@@ -54,7 +54,7 @@ struct Rerun {
 };
 
 /// `out` empty: runs/NUMBER of the campaign. Throws app::Refused for an unknown case, a folder in use or, unless it is
-/// trusted, one that would execute another program (trust.h), std::runtime_error if it cannot be flown here.
+/// trusted, one that would execute another program (copies.h), std::runtime_error if it cannot be flown here.
 [[nodiscard]] Rerun rerun(const Folder& folder, std::size_t number, const std::filesystem::path& out, bool is_trusted,
                           const std::function<bool()>& stop_requested);
 

@@ -26,7 +26,7 @@ struct PaperColumn {
   std::optional<MeanAndDeviation> attitude_error_deg = {};  ///< attitude error of the target
 };
 
-// Tables of published figures (paper_experiment1.h to 3) beside those of a run that meets the same waypoints.
+// Tables of published figures  beside those of a run that meets the same waypoints.
 
 /// A row of the paper's table of waypoints, with the figures that an experiment publishes for each.
 template <class Figures>

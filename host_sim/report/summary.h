@@ -50,7 +50,7 @@ struct SourceFigures {
 /// Figures of a testbed on the run, by name with the unit: "edges_missing", "bench".
 using TestbedFigures = std::map<std::string, std::variant<double, std::string>>;
 
-/// Burns against the thrust that the mission states (thrust.h).
+/// Burns against the thrust that the mission states (statistics.h).
 struct Thrust {
   double max_thrust_n = 0.0, mass_kg = 0.0;  ///< facts of the mission
   int burns = 0;                             ///< executed burns of the flight software

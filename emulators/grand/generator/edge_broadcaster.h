@@ -1,5 +1,5 @@
 #pragma once
-// Sender of PPS edges on a Unix datagram socket: the emulator's end of socket_edges.h.
+// Sender of PPS edges on a Unix datagram socket: the emulator's end of edge_source.h.
 
 #include <cstdint>
 #include <memory>

@@ -3,7 +3,7 @@
 // (../../receiver/measurements.h). In real time only; not deterministic.
 //
 // Ranges, phases, Doppler and C/N0 are gnss-sdr's. A subframe is accepted if it is, bit for bit, one that the satellite
-// transmitted; the position is computed from both (own_solution.h).
+// transmitted; the position is computed from both (measurements.h).
 
 #include <cstdint>
 #include <filesystem>

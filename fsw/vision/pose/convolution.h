@@ -4,7 +4,7 @@
 // Every output value is one sum: its bias, then the products in the order of the weights file, rows of the kernel, its
 // columns, channels in. Four output channels are four lanes; eight of them, over four cells of a row, are computed
 // together, so that loaded values are reused. An x86 processor with wider registers holds more channels in one register
-// (strip.h).
+// (convolution.h).
 
 #include <array>
 #include <cstddef>

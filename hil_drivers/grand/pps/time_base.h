@@ -47,7 +47,7 @@ class ChronyOutput {
 class TimeBase final : public engine::WallClock {
  public:
   /// `start` is the start of the generator and of the run, `pps` the source of the edges (edge_source.h) or "none",
-  /// `chrony` the socket to which they are forwarded (chrony_output.h), if not empty. Throws std::runtime_error if it
+  /// `chrony` the socket to which they are forwarded (time_base.h), if not empty. Throws std::runtime_error if it
   /// cannot be opened.
   TimeBase(fsw::GpsTime start, const std::string& pps, const std::string& chrony = {});
 

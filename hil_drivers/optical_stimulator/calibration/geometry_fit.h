@@ -35,7 +35,7 @@ struct Residual {
 [[nodiscard]] std::vector<Residual> in_region(const std::vector<Residual>& residuals,
                                               const twins::camera::Region& region);
 
-/// Returns the figures of the whole detector and of the region, with the field and without; the goals of goals.h.
+/// Returns the figures of the whole detector and of the region, with the field and without; the goals of procedure.h.
 [[nodiscard]] HeldOutResiduals held_out_residuals(const DisplayMapParameters& map, const std::vector<Dot>& dots,
                                                   const twins::camera::Region& region);
 

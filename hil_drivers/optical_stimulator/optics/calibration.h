@@ -85,7 +85,7 @@ struct ResidualFigures {
 struct HeldOutResiduals {
   ResidualFigures region, detector;                        ///< with the field terms
   ResidualFigures region_lens_terms, detector_lens_terms;  ///< figures of the lens terms alone
-  bool goal_reached = false;                               ///< the goals of calibrate/goals.h
+  bool goal_reached = false;                               ///< the goals of calibrate/procedure.h
 };
 
 struct StimulatorCalibration {

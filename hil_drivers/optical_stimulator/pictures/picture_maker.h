@@ -5,7 +5,7 @@
 // the renderer is needed, an object that is a point at a distance is treated as one until it is not, and points that
 // overlap are extended light, as they must be.
 //
-// A point's counts are matched (match_counts.h). One that asks for more than a pixel can emit is drawn as an even
+// A point's counts are matched (display_light.h). One that asks for more than a pixel can emit is drawn as an even
 // square of its light, nine full pixels at most, about its centroid. Extended light is rounded with error diffusion in
 // linear light (Floyd and Steinberg 1976) and clipped at the full count, which keeps its shape. What is not shown is
 // counted.

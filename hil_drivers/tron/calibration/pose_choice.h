@@ -67,7 +67,7 @@ using PostureFilter = std::function<bool(const Posture&)>;
 
 struct PatchPosture {
   Posture posture;
-  /// Names the sources (photometric_table.h) to be measured here, and the irradiance of the patch by them at full power
+  /// Names the sources (photometry.h) to be measured here, and the irradiance of the patch by them at full power
   /// as designed, to that of the lamp on an area that faces it.
   struct Light {
     std::size_t source = 0;

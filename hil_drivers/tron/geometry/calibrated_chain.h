@@ -1,6 +1,6 @@
 #pragma once
 // The kinematic chain of an arm with the errors that calibration finds, for any scalar: numbers for the driver, numbers
-// with derivatives for the fit. See ArmDesign (bench_file.h) for the chain as designed.
+// with derivatives for the fit. See ArmDesign (testbed_design.h) for the chain as designed.
 
 #include <cmath>
 

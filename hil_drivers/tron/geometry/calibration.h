@@ -1,7 +1,8 @@
 #pragma once
 // Result of a calibration of TRON: `vbar_tron calibrate` writes the file, and the driver reads it.
 //
-// Frames as in bench_file.h. C camera, T target, V frame of motion capture, OC and OT its objects on camera and target.
+// Frames as in testbed_design.h. C camera, T target, V frame of motion capture, OC and OT its objects on camera and
+// target.
 
 #include <array>
 #include <filesystem>

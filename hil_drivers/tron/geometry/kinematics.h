@@ -40,7 +40,7 @@ enum class MotionEnd {
   kInterrupted,  ///< both arms are at rest, or stopped by their controllers: recover()
 };
 
-// Kinematics of an arm of six axes with a spherical wrist, as designed (ArmDesign, bench_file.h).
+// Kinematics of an arm of six axes with a spherical wrist, as designed (ArmDesign, testbed_design.h).
 
 inline constexpr std::size_t kBranches = 8;
 

@@ -17,39 +17,39 @@
 
 namespace vbar::report {
 
-/// Mission, flight software, speed and end of the run (section_overview.cpp).
+/// Mission, flight software, speed and end of the run (overview.cpp).
 [[nodiscard]] std::string overview(const RunRecord& record);
 
-/// Distance, accuracy, aiding sources and maneuvers of the whole run (section_glance.cpp).
+/// Distance, accuracy, aiding sources and maneuvers of the whole run (overview.cpp).
 [[nodiscard]] Section glance_section(const RunRecord& record);
-/// Faults of the scenario and of the flight software (section_faults.cpp).
+/// Faults of the scenario and of the flight software (flight_computer.cpp).
 [[nodiscard]] Section faults_section(const RunRecord& record);
 
-/// The paper's performance metrics at each waypoint (section_waypoints.cpp).
+/// The paper's performance metrics at each waypoint (maneuvers.cpp).
 [[nodiscard]] Section waypoint_section(const RunRecord& record);
 
-/// Motion of the target about the servicer, in its RTN planes (section_trajectory.cpp).
+/// Motion of the target about the servicer, in its RTN planes (trajectory.cpp).
 [[nodiscard]] Section trajectory_section(const RunRecord& record);
 
-/// Mean ROE: true, estimated, desired (section_elements.cpp).
+/// Mean ROE: true, estimated, desired (trajectory.cpp).
 [[nodiscard]] Section elements_section(const RunRecord& record);
 
-/// Delta-v over time and all maneuvers (section_maneuvers.cpp).
+/// Delta-v over time and all maneuvers (maneuvers.cpp).
 [[nodiscard]] Section maneuver_section(const RunRecord& record);
 
-/// Errors of navigation and the bounds that its filter claims (section_navigation.cpp).
+/// Errors of navigation and the bounds that its filter claims (navigation.cpp).
 [[nodiscard]] Section navigation_section(const RunRecord& record);
 
-/// True attitudes and rates (section_attitude.cpp).
+/// True attitudes and rates (trajectory.cpp).
 [[nodiscard]] Section attitude_section(const RunRecord& record);
 
-/// Actions of guidance over time, and how near the target may drift (section_guidance.cpp).
+/// Actions of guidance over time, and how near the target may drift (maneuvers.cpp).
 [[nodiscard]] Section guidance_section(const RunRecord& record);
 
-/// Counts of the flight software: packets rejected and dropped, plans rejected, faults (section_health.cpp).
+/// Counts of the flight software: packets rejected and dropped, plans rejected, faults (flight_computer.cpp).
 [[nodiscard]] Section health_section(const RunRecord& record);
 
-/// Cost of each flight step, link, deadlines and where the wall-clock time went (section_computer.cpp).
+/// Cost of each flight step, link, deadlines and where the wall-clock time went (flight_computer.cpp).
 [[nodiscard]] Section computer_section(const RunRecord& record);
 
 // Elements of plots that several sections share.

@@ -47,7 +47,7 @@ TEST(TrueArm, StretchedArmReachesTheSumOfItsLengths) {
   const Eigen::Isometry3d T = arm.T_base_flange(Joints::Zero());
   EXPECT_NEAR((T.translation() - fsw::Vector3(1.180, 0.0, 0.435)).norm(), 0.0, 1e-12);
   fsw::Matrix3 R;
-  R << 0, 0, 1, 0, 1, 0, -1, 0, 0;  // bench_file.h
+  R << 0, 0, 1, 0, 1, 0, -1, 0, 0;  // testbed_design.h
   EXPECT_NEAR((T.linear() - R).norm(), 0.0, 1e-12);
 }
 

@@ -208,7 +208,7 @@ TEST(PlanSafety, RefusesWhatIsNoPlan) {
 
 }  // namespace
 
-// The retreat from the paper's last waypoints; figures of a separate implementation as in linear_drift_test.cpp.
+// The retreat from the paper's last waypoints; figures of a separate implementation as in passive_safety_test.cpp.
 
 namespace {
 
