@@ -4,8 +4,10 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 ci/test.sh
 ci/fuzz.sh 20
-# The second command of the README on a new Debian 12 until its tests start, and the portable bundle on Debian 13.
+# The second command of the README on a new Debian 12 until its tests start, and the portable bundle in a root with a shell only
+# and on Debian 13.
 ci/clean_root.sh test || (($? == 77))  # 77: cannot be made here
+ci/bundle.sh --check || (($? == 77))
 ci/bundle.sh --check13 || (($? == 77))
 # gnss-sdr behind the ports of a receiver; 120 s of two spacecraft through it and RTKLIB: double differences and the fixed baseline.
 gnss_sdr=(python3 tests/peers/gnss_sdr/check_gnss_sdr.py build/host/tests/peers/gnss_sdr/vbar_gnss_sdr_tool)
