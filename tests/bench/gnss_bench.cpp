@@ -70,19 +70,19 @@ namespace {
 using namespace vbar;
 
 void receiver_epoch(benchmark::State& state) {
-  twins::gnss::GnssReceiver receiver({}, test::constellation(1), test::data_directory(), 1, "servicer");
+  twins::gnss::GnssReceiver receiver({}, vbar::test::constellation(1), vbar::test::data_directory(), 1, "servicer");
   double t = 0.0;
   for ([[maybe_unused]] auto _ : state) {
-    benchmark::DoNotOptimize(receiver.bytes_at(test::in_orbit(t)));
+    benchmark::DoNotOptimize(receiver.bytes_at(vbar::test::in_orbit(t)));
     t += 10.0;
   }
 }
 
 void true_satellite(benchmark::State& state) {
-  const auto constellation = test::constellation(1);
+  const auto constellation = vbar::test::constellation(1);
   double offset = 0.0;
   for ([[maybe_unused]] auto _ : state) {
-    benchmark::DoNotOptimize(constellation->true_state(7, test::kGnssStart, offset));
+    benchmark::DoNotOptimize(constellation->true_state(7, vbar::test::kGnssStart, offset));
     offset += 1.0;
   }
 }
@@ -168,8 +168,8 @@ void epoch(benchmark::State& state, double wander_sigma_m) {
   std::vector<gnss::ObservationEpoch> ours, theirs;
   for (int k = 0; k < kEpochs; ++k) {
     const GpsTime tag{start.ns + k * kPeriod.ns};
-    ours.push_back(pair.servicer.observe(tag, pair.satellites, measurements::test::kEarth));
-    theirs.push_back(pair.target.observe(tag, pair.satellites, measurements::test::kEarth));
+    ours.push_back(pair.servicer.observe(tag, pair.satellites, gnss::test::kEarth));
+    theirs.push_back(pair.target.observe(tag, pair.satellites, gnss::test::kEarth));
   }
   for (auto _ : state) {
     state.PauseTiming();

@@ -143,7 +143,8 @@ BENCHMARK(BM_GrandTrajectorySample);
 
 void BM_GrandSkydelDatagram(benchmark::State& state) {
   const TrajectorySample sample = vbar::grand::test::sample_at(vbar::grand::test::kTenth);
-  for (auto _ : state) benchmark::DoNotOptimize(wire::decode_hil(wire::encode_sample(sample)));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(vbar::grand::wire::decode_hil(vbar::grand::wire::encode_sample(sample)));
 }
 BENCHMARK(BM_GrandSkydelDatagram);
 

@@ -72,7 +72,7 @@ BENCHMARK(solve)->Name("pose/pnp/vbar/outliers")->Arg(0)->Arg(1)->Arg(3)->Arg(5)
 
 namespace {
 
-using namespace vbar::fsw::network;
+using namespace vbar::fsw::pose;
 
 std::unique_ptr<KeypointNetwork> network_on_board() {
   auto network = std::make_unique<KeypointNetwork>();

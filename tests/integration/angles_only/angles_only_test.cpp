@@ -13,8 +13,6 @@
 namespace vbar::test {
 namespace {
 
-namespace nav = fsw::navigation;
-
 constexpr double kWaypointHours[] = {6.0, 12.0, 18.0, 24.0, 28.0, 32.0, 36.0};
 
 fsw::filter::FilterSettings blocks_for(const TrueFlight& flight, const SensorErrors& errors) {

@@ -27,7 +27,6 @@ namespace {
 using fsw::Vector2;
 using fsw::Vector3;
 using fsw::Vector6;
-namespace nav = fsw::navigation;
 namespace orbit = fsw::orbit;
 
 constexpr double kDegree = fsw::math::kDegree;
@@ -42,9 +41,9 @@ T must(const fsw::Result<T>& result) {
   return result.value();
 }
 
-std::vector<nav::Burn> load_burns(fsw::GpsTime start) {
+std::vector<fsw::filter::Burn> load_burns(fsw::GpsTime start) {
   std::ifstream file(vbar::tests::source_path("tests/integration/angles_only/burns.csv"));
-  std::vector<nav::Burn> burns;
+  std::vector<fsw::filter::Burn> burns;
   for (std::string line; std::getline(file, line);) {
     double t = 0.0;
     Vector3 dv;
@@ -148,7 +147,7 @@ TrueFlight fly_truly(double hours, bool all_forces) {
     epoch.servicer = model.state(0);
     epoch.target = model.state(1);
     epoch.sun_eci = ephemeris.at(truth::tt_of(settings.epoch, t)).sun_eci.normalized();
-    epoch.is_target_lit = nav::is_sunlit(epoch.target.position_eci, epoch.sun_eci);
+    epoch.is_target_lit = fsw::filter::is_sunlit(epoch.target.position_eci, epoch.sun_eci);
     flight.epochs.push_back(epoch);
   }
   return flight;
@@ -161,7 +160,7 @@ SimulatedSensors::SimulatedSensors(const TrueFlight& flight, const SensorErrors&
   brightness_offset_m_ = errors.brightness_offset_m * (1.0 + 0.5 * normal());
   shape_ = {normal(), normal()};
   gnss_slow_ = normal3();
-  for (nav::Burn burn : flight.burns) {
+  for (fsw::filter::Burn burn : flight.burns) {
     burn.dv_rtn += errors.burn_relative * burn.dv_rtn.norm() * normal3();
     known_burns_.push_back(burn);
   }
@@ -189,14 +188,14 @@ MeasuredEpoch SimulatedSensors::measure(std::size_t index) {
   const Vector2 stray(std::uniform_real_distribution<double>(-1.0, 1.0)(random_),
                       std::uniform_real_distribution<double>(-1.0, 1.0)(random_));
   if (!truth.is_target_lit) return epoch;
-  const Vector3 centre = nav::centre_of_brightness(truth.target.position_eci, truth.servicer.position_eci,
-                                                   truth.sun_eci, brightness_offset_m_);
+  const Vector3 centre = fsw::target_tracking::centre_of_brightness(
+      truth.target.position_eci, truth.servicer.position_eci, truth.sun_eci, brightness_offset_m_);
   const Vector3 sight = centre - truth.servicer.position_eci;
   const double radius = kTargetRadius_m / sight.norm();
   Vector2 off = bias_ + errors_.bearing_arcsec * kArcsec * white + errors_.shape_share * radius * shape_;
   if (chance < errors_.outlier_share) off += 1.0 * kDegree * stray;
-  const fsw::Matrix3 axes = nav::bearing_axes(sight.normalized(), truth.servicer);
-  nav::BearingMeasurement bearing;
+  const fsw::Matrix3 axes = fsw::target_tracking::bearing_axes(sight.normalized(), truth.servicer);
+  fsw::target_tracking::BearingMeasurement bearing;
   bearing.time = truth.time;
   bearing.direction_eci = (sight.normalized() + axes.topRows<2>().transpose() * off).normalized();
   bearing.sigma = errors_.bearing_arcsec * kArcsec;
@@ -231,7 +230,7 @@ AnglesOnlyFlight::AnglesOnlyFlight(const fsw::filter::FilterSettings& blocks,
 }
 
 fsw::measurements::BearingEditStatus AnglesOnlyFlight::update(const MeasuredEpoch& epoch,
-                                                              const std::vector<nav::Burn>& burns) {
+                                                              const std::vector<fsw::filter::Burn>& burns) {
   for (const auto& [time, position] : epoch.positions) {
     filter_->advance_to(time, burns);
     filter_->update_absolute_orbit(position);
@@ -298,7 +297,7 @@ std::vector<double> position_bound(const TrueFlight& flight, const std::vector<s
     const TrueEpoch& epoch = flight.epochs[k];
     if (k > 0) {
       const TrueEpoch& last = flight.epochs[k - 1];
-      const nav::Propagation propagation(last.time, flight.earth, last.sun_eci);
+      const fsw::filter::Propagation propagation(last.time, flight.earth, last.sun_eci);
       for (orbit::CartesianState& o : orbits) o = propagation.coast(o, fsw::seconds(epoch.time - last.time));
     }
     Eigen::Matrix<double, 3, 6> moves;  // of the target's position, m, per metre of a * ROE at the start
@@ -310,7 +309,8 @@ std::vector<double> position_bound(const TrueFlight& flight, const std::vector<s
     const double range = sight.norm();
     if (epoch.is_target_lit) {
       Eigen::Matrix<double, 2, 8> slope;
-      slope.leftCols<6>() = nav::bearing_axes(sight / range, epoch.servicer).topRows<2>() * moves / range;
+      slope.leftCols<6>() =
+          fsw::target_tracking::bearing_axes(sight / range, epoch.servicer).topRows<2>() * moves / range;
       slope.rightCols<2>().setIdentity();
       const double resolved = settings.resolved_share * kTargetRadius_m / range;
       const double variance = settings.bearing_sigma * settings.bearing_sigma + resolved * resolved;

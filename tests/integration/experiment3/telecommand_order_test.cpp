@@ -21,7 +21,7 @@ namespace vbar::test {
 namespace {
 
 namespace packets = fsw::packets;
-using fsw::messaging::test::packet_of;
+using fsw::gnc::test::packet_of;
 using Packets = std::vector<twins::Packet>;
 
 constexpr int kArrivalSteps = 3;
@@ -77,14 +77,14 @@ class TelecommandOrder : public ::testing::TestWithParam<std::int32_t> {
     add(mission.navigation.thruster);
     add(sensors::receiver_configuration_of(servicer));
     add(sensors::carrier_configuration_of(mission, servicer));
-    add(fsw::messaging::test::camera());
-    add(fsw::messaging::test::angles_only());
-    add(fsw::messaging::test::pose());
-    add(fsw::messaging::test::target_shape());
-    add(GetParam() == kKeypoints ? fsw::messaging::test::target(kRelative) : target_of_truth());
-    add(fsw::messaging::test::table_of({fsw::messaging::test::waypoint_at(8, 400 * 3600, 1, kRelative)}));
-    add(fsw::messaging::test::configuration());
-    add(fsw::messaging::test::mode(mode_command::kModeApproach));
+    add(fsw::gnc::test::camera());
+    add(fsw::gnc::test::angles_only());
+    add(fsw::gnc::test::pose());
+    add(fsw::gnc::test::target_shape());
+    add(GetParam() == kKeypoints ? fsw::gnc::test::target(kRelative) : target_of_truth());
+    add(fsw::gnc::test::table_of({fsw::gnc::test::waypoint_at(8, 400 * 3600, 1, kRelative)}));
+    add(fsw::gnc::test::configuration());
+    add(fsw::gnc::test::mode(mode_command::kModeApproach));
   }
 
   /// The sensors' packets by the epoch at which they have arrived.
@@ -118,7 +118,7 @@ class TelecommandOrder : public ::testing::TestWithParam<std::int32_t> {
     const auto keep = [](void* all, const std::uint8_t* packet, std::size_t size) {
       static_cast<Packets*>(all)->emplace_back(packet, packet + size);
     };
-    const auto gnc = std::make_unique<fsw::gnc::Gnc>(fsw::messaging::test::kServicer, keep, &sent);
+    const auto gnc = std::make_unique<fsw::gnc::Gnc>(fsw::gnc::test::kServicer, keep, &sent);
     const auto run = [&](fsw::GpsTime now) {
       tick message{};
       message.period_ns = periods(1).ns;

@@ -67,6 +67,6 @@ TEST(StateFlips, AreReportedAndCorrectedInTheNextStep) {
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
-  vbar::fsw::messaging::test::snapshot_files.assign(argv + 1, argv + argc);
+  vbar::fsw::gnc::test::snapshot_files.assign(argv + 1, argv + argc);
   return RUN_ALL_TESTS();
 }

@@ -10,7 +10,7 @@
 #include "fsw/vision/pose/keypoint_network.h"
 
 int main(int argc, char** argv) {
-  using namespace vbar::fsw::network;
+  using namespace vbar::fsw::pose;
   if (argc != 2) {
     std::fprintf(stderr, "usage: vbar_network_tool WEIGHTS < crops > logits\n");
     return 2;

@@ -19,7 +19,7 @@ TEST(KeypointNetworkPeer, OpencvGivesTheSameMaps) {
 #ifndef VBAR_HAVE_OPENCV
   GTEST_SKIP() << "OpenCV's dnn is not installed";
 #else
-  using namespace vbar::fsw::network;
+  using namespace vbar::fsw::pose;
   cv::setNumThreads(1);
   const vbar::test::WeightsFile file = vbar::test::random_file(3);
   const auto network = std::make_unique<KeypointNetwork>();

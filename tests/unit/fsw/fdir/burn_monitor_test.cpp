@@ -14,7 +14,7 @@
 namespace vbar::fsw::fdir {
 namespace {
 
-using test::at;
+using gnc::test::at;
 
 class BurnMonitorTest : public ::testing::Test {
  protected:
@@ -24,7 +24,7 @@ class BurnMonitorTest : public ::testing::Test {
     message.maneuver_id = id;
     message.accepted = accepted ? 1 : 0;
     for (int k = 0; k < 3; ++k) message.dv_rtn[k] = dv_rtn(k);
-    ASSERT_EQ(inbox_.receive(test::packet_of(time, message, sequence_++, kServicer)), Status::kOk);
+    ASSERT_EQ(inbox_.receive(gnc::test::packet_of(time, message, sequence_++, kServicer)), Status::kOk);
   }
   /// The faults that the step raised.
   std::int32_t step(GpsTime now) {

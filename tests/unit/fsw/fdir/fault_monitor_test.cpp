@@ -14,7 +14,7 @@ GpsTime at(int s) {
   return GpsTime{} + duration_of_seconds(s);
 }
 
-TEST(faults::FaultMonitor, AFaultIsRaisedOnceItPersistsWithAnEvent) {
+TEST(FaultMonitor, AFaultIsRaisedOnceItPersistsWithAnEvent) {
   faults::FaultMonitor monitor;
   monitor.check(at(1), {.fault = kThruster, .is_detected = true});
   EXPECT_EQ(monitor.latched(), 0);
@@ -32,7 +32,7 @@ TEST(faults::FaultMonitor, AFaultIsRaisedOnceItPersistsWithAnEvent) {
   EXPECT_EQ(raised.time, at(2));
 }
 
-TEST(faults::FaultMonitor, AFaultThatEndsStaysLatchedWithItsFirstOnset) {
+TEST(FaultMonitor, AFaultThatEndsStaysLatchedWithItsFirstOnset) {
   faults::FaultMonitor monitor;
   for (int s = 1; s <= 2; ++s) monitor.check(at(s), {.fault = kThruster, .is_detected = true});
   for (int s = 3; s <= 4; ++s) monitor.check(at(s), {.fault = kThruster, .is_detected = false});
@@ -44,7 +44,7 @@ TEST(faults::FaultMonitor, AFaultThatEndsStaysLatchedWithItsFirstOnset) {
   EXPECT_EQ(monitor.present(), kThruster);
 }
 
-TEST(faults::FaultMonitor, ClearingUnlatchesAndAFaultThatPersistsIsRaisedAgain) {
+TEST(FaultMonitor, ClearingUnlatchesAndAFaultThatPersistsIsRaisedAgain) {
   faults::FaultMonitor monitor;
   for (int s = 1; s <= 2; ++s) monitor.check(at(s), {.fault = kThruster, .is_detected = true});
   monitor.forget_transitions();
@@ -57,7 +57,7 @@ TEST(faults::FaultMonitor, ClearingUnlatchesAndAFaultThatPersistsIsRaisedAgain) 
   EXPECT_EQ(monitor.onset(kThruster), at(5));
 }
 
-TEST(faults::FaultMonitor, ClearingOneLeavesTheOthers) {
+TEST(FaultMonitor, ClearingOneLeavesTheOthers) {
   faults::FaultMonitor monitor;
   monitor.check(at(1), {.fault = telemetry_health::kFaultInboxFull, .is_detected = true});
   monitor.check(at(1), {.fault = telemetry_health::kFaultClock, .is_detected = true});
@@ -66,7 +66,7 @@ TEST(faults::FaultMonitor, ClearingOneLeavesTheOthers) {
   EXPECT_EQ(monitor.present(), telemetry_health::kFaultInboxFull);
 }
 
-TEST(faults::FaultMonitor, TheResponseIsThatOfTheTable) {
+TEST(FaultMonitor, TheResponseIsThatOfTheTable) {
   faults::FaultMonitor monitor;
   EXPECT_FALSE(monitor.demands(faults::Response::kRetreat));
   monitor.check(at(1), {.fault = telemetry_health::kFaultGuardSilence, .is_detected = true});
@@ -76,7 +76,7 @@ TEST(faults::FaultMonitor, TheResponseIsThatOfTheTable) {
   EXPECT_FALSE(monitor.demands(faults::Response::kRetreat));
 }
 
-TEST(faults::FaultMonitor, TransitionsWithoutAPlaceAreCounted) {
+TEST(FaultMonitor, TransitionsWithoutAPlaceAreCounted) {
   faults::FaultMonitor monitor;
   for (int s = 0; s < 200; ++s)
     monitor.check(at(s), {.fault = telemetry_health::kFaultClock, .is_detected = s % 2 == 0});
@@ -88,7 +88,7 @@ TEST(faults::FaultMonitor, TransitionsWithoutAPlaceAreCounted) {
 
 namespace {
 
-TEST(faults::Persistence, RaisedByTheLimitWithinTheWindow) {
+TEST(Persistence, RaisedByTheLimitWithinTheWindow) {
   faults::Persistence p(3, 5);
   EXPECT_FALSE(p.add(true));
   EXPECT_FALSE(p.add(false));
@@ -97,7 +97,7 @@ TEST(faults::Persistence, RaisedByTheLimitWithinTheWindow) {
   EXPECT_TRUE(p.add(true));
 }
 
-TEST(faults::Persistence, DetectionsOutsideTheWindowDoNotCount) {
+TEST(Persistence, DetectionsOutsideTheWindowDoNotCount) {
   faults::Persistence p(2, 3);
   EXPECT_FALSE(p.add(true));
   EXPECT_FALSE(p.add(false));
@@ -105,7 +105,7 @@ TEST(faults::Persistence, DetectionsOutsideTheWindowDoNotCount) {
   EXPECT_FALSE(p.add(true));
 }
 
-TEST(faults::Persistence, EndsWhenTheWholeWindowIsClear) {
+TEST(Persistence, EndsWhenTheWholeWindowIsClear) {
   faults::Persistence p(1, 3);
   EXPECT_TRUE(p.add(true));
   EXPECT_TRUE(p.add(false));
@@ -113,7 +113,7 @@ TEST(faults::Persistence, EndsWhenTheWholeWindowIsClear) {
   EXPECT_FALSE(p.add(false));
 }
 
-TEST(faults::Persistence, LargestWindow) {
+TEST(Persistence, LargestWindow) {
   faults::Persistence p(64, 64);
   for (int k = 0; k < 63; ++k) EXPECT_FALSE(p.add(true)) << k;
   EXPECT_TRUE(p.add(true));
@@ -121,7 +121,7 @@ TEST(faults::Persistence, LargestWindow) {
   EXPECT_FALSE(p.add(false));
 }
 
-TEST(faults::Persistence, ResetForgetsEverything) {
+TEST(Persistence, ResetForgetsEverything) {
   faults::Persistence p(2, 4);
   p.add(true);
   p.reset();

@@ -29,7 +29,7 @@ class ImageWatchTest : public ::testing::Test {
     for (int k = 0; k < kSide * kSide; ++k)
       tile.data[k] = static_cast<std::uint8_t>(seed == 0 ? 7 : (seed * 31 + k * k) % 251);
     inbox_->clear(at(s + 1));
-    ASSERT_EQ(inbox_->receive(test::packet_of(at(s), tile, sequence_++, kServicer, unit)), Status::kOk);
+    ASSERT_EQ(inbox_->receive(gnc::test::packet_of(at(s), tile, sequence_++, kServicer, unit)), Status::kOk);
   }
   /// The faults that the step raised.
   std::int32_t step(int s) {

@@ -8,11 +8,12 @@
 #include "fsw/orbit/sun.h"
 #include "tests/unit/fsw/gnss/synthetic_receivers.h"
 
-namespace vbar::fsw::gnc::test {
+namespace vbar::fsw::fdir {
+
 namespace {
 
-using filter::test::CooperatingPair;
-using filter::test::kEarth;
+using gnss::test::CooperatingPair;
+using gnss::test::kEarth;
 
 constexpr double kEarthRadius_m = 6378137.0;
 
@@ -51,4 +52,4 @@ TEST(SafetyMonitorInputs, WithoutAPositionNothingIsKnownOfTheLight) {
 }
 
 }  // namespace
-}  // namespace vbar::fsw::gnc::test
+}  // namespace vbar::fsw::fdir

@@ -8,7 +8,6 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-#include "fsw/estimation/batch.h"
 #include "fsw/estimation/measurement_batch.h"
 #include "fsw/estimation/state_layout.h"
 #include "fsw/estimation/unscented.h"
@@ -28,7 +27,7 @@ struct Ambiguities {
   static constexpr int kSize = 40;
 };
 
-TEST(estimation::Layout, BlocksStandOneAfterTheOther) {
+TEST(Layout, BlocksStandOneAfterTheOther) {
   using State = estimation::Layout<Orbit, Clock, Ambiguities>;
   static_assert(State::kSize == 48);
   static_assert(State::offset<Orbit>() == 0 && State::offset<Clock>() == 6 && State::offset<Ambiguities>() == 8);
@@ -45,7 +44,7 @@ struct InformationFilter {
   }
 };
 
-TEST(estimation::Estimate, ScalarUpdatesAreTheLeastSquaresSolution) {
+TEST(Estimate, ScalarUpdatesAreTheLeastSquaresSolution) {
   constexpr int kN = 8;
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
@@ -75,7 +74,7 @@ TEST(estimation::Estimate, ScalarUpdatesAreTheLeastSquaresSolution) {
 
 // Components become active and inactive in any order, the last ones too: the operations then run over others, with the
 // results of the textbook's dense equations.
-TEST(estimation::Estimate, ActivationInAnyOrderIsTheDenseFilter) {
+TEST(Estimate, ActivationInAnyOrderIsTheDenseFilter) {
   constexpr int kN = 9;
   using Matrix = Eigen::Matrix<double, kN, kN>;
   using Vector = Eigen::Matrix<double, kN, 1>;
@@ -118,7 +117,7 @@ TEST(estimation::Estimate, ActivationInAnyOrderIsTheDenseFilter) {
   }
 }
 
-TEST(estimation::Estimate, IdleComponentsStayIdle) {
+TEST(Estimate, IdleComponentsStayIdle) {
   estimation::Estimate<4> estimate;
   estimate.reset(0, 1.0, 4.0);
   estimate.reset(2, 3.0, 9.0);
@@ -133,7 +132,7 @@ TEST(estimation::Estimate, IdleComponentsStayIdle) {
   EXPECT_EQ(estimate.covariance(0, 2), 0.0);
 }
 
-TEST(estimation::Estimate, TransformIsThePropagationOfTheWholeCovariance) {
+TEST(Estimate, TransformIsThePropagationOfTheWholeCovariance) {
   constexpr int kN = 5;
   constexpr int kM = 2;
   estimation::Estimate<kN> estimate;
@@ -163,7 +162,7 @@ TEST(estimation::Estimate, TransformIsThePropagationOfTheWholeCovariance) {
   EXPECT_EQ(estimate.mean(1), 6.0);
 }
 
-TEST(estimation::Estimate, GateRefusesOutliersAndWhatIsNoNumber) {
+TEST(Estimate, GateRefusesOutliersAndWhatIsNoNumber) {
   estimation::Estimate<2> estimate;
   estimate.reset(0, 0.0, 1.0);
   estimate.reset(1, 0.0, 1.0);
@@ -181,7 +180,7 @@ TEST(estimation::Estimate, GateRefusesOutliersAndWhatIsNoNumber) {
   EXPECT_FALSE(estimate.is_sound());
 }
 
-TEST(estimation::Estimate, MillimetresBesideUnknownAmbiguities) {
+TEST(Estimate, MillimetresBesideUnknownAmbiguities) {
   // The worst a phase filter asks of doubles: 50 m against 1 mm, a hundred times over. The covariance stays sound and
   // the difference of two ambiguities is known to what the phases say.
   estimation::Estimate<4> estimate;
@@ -200,7 +199,7 @@ TEST(estimation::Estimate, MillimetresBesideUnknownAmbiguities) {
   EXPECT_NEAR(difference, 1.4 * 1.4 * estimate.variance(0), 1e-3);
 }
 
-TEST(estimation::Estimate, AsksNothingOfTheHeap) {
+TEST(Estimate, AsksNothingOfTheHeap) {
   static estimation::Estimate<80> estimate;
   const std::size_t before = test::allocation_count();
   for (int i = 0; i < 80; ++i) estimate.reset(i, 0.0, 1.0);
@@ -319,7 +318,7 @@ TEST_F(BatchCase, ANoiseThatIsNoneChangesNothing) {
 }
 
 /// A component of variance zero is not sampled, and the others as if it did not exist.
-TEST(estimation::UnscentedTransform, InactiveComponentsAreNotSampled) {
+TEST(UnscentedTransform, InactiveComponentsAreNotSampled) {
   estimation::UnscentedTransform<3> transform;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   covariance(0, 0) = 4.0;

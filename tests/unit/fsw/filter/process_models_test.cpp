@@ -145,7 +145,7 @@ constexpr AdaptiveNoiseSettings kSettings{.psd = 1e-13, .psd_min = 1e-14, .psd_m
 /// First-order correlated pairs, as a filter that lags leaves them. `scale`: their standard deviation.
 void feed(AdaptiveNoise& noise, double correlation, double scale, int count, bool interrupted = false,
           AdaptiveNoise::Correlation cause = AdaptiveNoise::Correlation::kOfLag) {
-  test::Noise random(3);
+  measurements::test::Noise random(3);
   Vector2 value = random.normal2();
   for (int k = 0; k < count; ++k) {
     value = correlation * value + std::sqrt(1.0 - correlation * correlation) * random.normal2();

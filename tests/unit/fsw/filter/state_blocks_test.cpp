@@ -15,7 +15,7 @@ namespace vbar::fsw::filter {
 
 namespace {
 
-using namespace navigation::test;
+using namespace measurements::test;
 
 const Vector6 kRoe = roe_of_metres(-87.0, -50000.0, 30.0, 1000.0, -20.0, 1000.0);
 
@@ -130,7 +130,7 @@ TEST(RelativeOrbit, EmpiricalAccelerationsRestAndBeginWithoutTouchingTheOrbit) {
 TEST(RelativeOrbit, AnEmpiricalAccelerationMovesTheMeanAsThePropagationDoes) {
   const auto filter = filter_with(without_noise(), kRoe, diagonal_covariance(1e-3, 1e-3, 1e-3));
   FilterSettings settings = without_noise();
-  settings.relative_orbit.empirical = {.sigma = 1e-12, .time_s = kConstant};
+  settings.relative_orbit.empirical = {.sigma = 1e-12, .time_s = estimation::kConstant};
   filter->configure(settings);
   filter->relative_orbit().activate_empirical(filter->estimate());
   filter->estimate().shift(kAt<EmpiricalAcceleration>, 1e-7);

@@ -18,7 +18,7 @@
 namespace vbar::fsw::filter {
 namespace {
 
-using namespace navigation::test;
+using namespace measurements::test;
 using measurements::BearingBias;
 using measurements::BrightnessOffset;
 using measurements::CentroidWander;

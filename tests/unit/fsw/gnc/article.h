@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fsw/messaging/vbar_gnc.h"
-#include "tests/unit/fsw/messaging/configurations.h"
+#include "tests/unit/fsw/messaging/packet_factory.h"
 
 namespace vbar::fsw::gnc::test {
 

@@ -44,7 +44,7 @@ void expect_flips_corrected(const std::vector<std::byte>& memory, std::span<unsi
     ASSERT_EQ(answer.events.size(), reference.events.size() + 1) << "byte " << at_byte;
     const auto is_restored = [](const telemetry_event& event) {
       return event.fault == telemetry_health::kFaultState &&
-             event.argument == static_cast<double>(Integrity::kRestored);
+             event.argument == static_cast<double>(navigation::Integrity::kRestored);
     };
     ASSERT_TRUE(std::ranges::any_of(answer.events, is_restored)) << "byte " << at_byte;
     ASSERT_EQ(without_health(answer.packets), without_health(reference.packets)) << "byte " << at_byte;

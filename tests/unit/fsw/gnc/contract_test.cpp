@@ -212,7 +212,7 @@ executed_maneuver tiny_maneuver(std::int32_t id) {
 TEST(Queues, OfMeasurementsKeepWhatTheyHave) {
   Flight flight(kStart);
   const std::int64_t first = flight.now.ns - kNanosecondsPerSecond;
-  const auto capacity = static_cast<std::int64_t>(Inbox::kCapacity<ideal_navigation>);
+  const auto capacity = static_cast<std::int64_t>(messaging::Inbox::kCapacity<ideal_navigation>);
   for (std::int64_t k = 0; k < capacity; ++k) {
     EXPECT_EQ(flight.article.deliver({first + k}, flight.world.measurement()), 0);
   }

@@ -71,7 +71,8 @@ class HostileSources : public ::testing::Test {
     EXPECT_EQ(answer.status, 0);
     EXPECT_EQ(answer.navigation.valid, 1);
     EXPECT_EQ(answer.health.outbox_dropped, 0) << "a NaN";
-    EXPECT_NEAR(vector(answer.navigation.relative_position_rtn).norm(), 100.0, 10.0);  // propagated, not initialised
+    EXPECT_NEAR(messaging::vector(answer.navigation.relative_position_rtn).norm(), 100.0,
+                10.0);  // propagated, not initialised
   }
 
   Flight flight_{kStart};
@@ -188,7 +189,8 @@ TEST_F(HostileSources, RangesWithImpossibleTimesAreCounted) {
   EXPECT_TRUE(refused.events.empty());
   expect_sound(refused);
   const ideal_navigation truth = flight_.world.measurement();
-  const double range_m = (vector(truth.target_position_eci) - vector(truth.servicer_position_eci)).norm();
+  const double range_m =
+      (messaging::vector(truth.target_position_eci) - messaging::vector(truth.servicer_position_eci)).norm();
   deliver_range(flight_.now, range_m);
   const Answer used = flight_.step();
   ASSERT_EQ(used.events.size(), 1U);

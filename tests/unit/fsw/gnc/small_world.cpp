@@ -77,7 +77,7 @@ waypoint_table paper_waypoints() {
 }
 
 gnc_configuration configuration() {
-  return Management().configuration();
+  return guidance::Management().configuration();
 }
 
 mode_command mode(std::int8_t number) {

@@ -227,7 +227,7 @@ TEST(BeidouEphemeris, RefusesWhatCannotBe) {
 namespace {
 
 OemMessage raw_log_of(std::uint16_t id, const Bytes& body) {
-  return test::raw_log_of(id, body, start_of_week(1643));
+  return test::log_of(id, body, start_of_week(1643));
 }
 
 /// One subframe of 240 bits, fields set by word and bit as the interface document numbers them.

@@ -16,7 +16,7 @@
 #include "fsw/orbit/elements.h"
 #include "fsw/orbit/rtn.h"
 
-namespace vbar::fsw::navigation::test {
+namespace vbar::fsw::gnss::test {
 
 inline GpsTime start_time() {
   return GpsTime{994986015LL * kNanosecondsPerSecond};  // 2011-07-18 01:00:00 UTC
@@ -64,7 +64,7 @@ struct SyntheticReceiver {
 
   orbit::CartesianState state_at(GpsTime time) const {
     if (motion) return motion(start, seconds(time - start_time()));
-    return propagate_accelerated(start, Vector3::Zero(), seconds(time - start_time()));
+    return filter::propagate_accelerated(start, Vector3::Zero(), seconds(time - start_time()));
   }
 
   /// Zenith pointing: body z up, x along-track.
@@ -174,4 +174,4 @@ struct CooperatingPair {
   GpsTime tag = start_time() + duration_of_seconds(10);
 };
 
-}  // namespace vbar::fsw::navigation::test
+}  // namespace vbar::fsw::gnss::test

@@ -7,7 +7,9 @@
 #include "tests/support/figures.h"
 #include "tests/unit/fsw/gnc/small_world.h"
 
-namespace vbar::fsw::gnc::test {
+namespace vbar::fsw::guidance {
+
+using namespace gnc::test;
 
 namespace {
 
@@ -227,4 +229,4 @@ TEST(StationKeeping, HoldsForADay) {
 
 }  // namespace
 
-}  // namespace vbar::fsw::gnc::test
+}  // namespace vbar::fsw::guidance

@@ -17,8 +17,8 @@ namespace vbar::fsw::guidance {
 
 namespace {
 
-using test::kServicer;
-using test::packet_of;
+using gnc::test::kServicer;
+using gnc::test::packet_of;
 
 waypoint_table table_of_three() {
   waypoint_table table{};

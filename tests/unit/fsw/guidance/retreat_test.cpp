@@ -6,7 +6,9 @@
 #include "tests/unit/fsw/gnc/small_world.h"
 #include "tests/unit/fsw/messaging/configurations.h"
 
-namespace vbar::fsw::gnc::test {
+namespace vbar::fsw::guidance {
+
+using namespace gnc::test;
 namespace {
 
 constexpr std::int64_t kHour = 3600;
@@ -34,7 +36,7 @@ Flight approach() {
   gnc_configuration c = configuration();
   c.navigation_timeout_s = 3000.0;
   flight.send(c);
-  flight.send(safety());
+  flight.send(gnc::test::safety());
   flight.send(last_waypoints());
   flight.send(mode(1));
   return flight;
@@ -214,4 +216,4 @@ TEST(RetreatMode, ShortBurnsAreCompensated) {
 }
 
 }  // namespace
-}  // namespace vbar::fsw::gnc::test
+}  // namespace vbar::fsw::guidance

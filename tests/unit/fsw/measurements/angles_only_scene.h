@@ -9,7 +9,7 @@
 #include "fsw/orbit/roe.h"
 #include "fsw/vision/target_tracking/bearing.h"
 
-namespace vbar::fsw::navigation::test {
+namespace vbar::fsw::measurements::test {
 
 inline constexpr double kArcsec = M_PI / 180.0 / 3600.0;
 inline constexpr double kA = 7087300.0;
@@ -42,12 +42,14 @@ inline orbit::CartesianState scene_target(const orbit::CartesianState& servicer,
 }
 
 /// What a point target shows, with noise (rad, each axis).
-inline BearingMeasurement bearing_of(GpsTime time, const orbit::CartesianState& servicer,
-                                     const orbit::CartesianState& target, double sigma, const Vector2& error) {
-  BearingMeasurement bearing;
+inline target_tracking::BearingMeasurement bearing_of(GpsTime time, const orbit::CartesianState& servicer,
+                                                      const orbit::CartesianState& target, double sigma,
+                                                      const Vector2& error) {
+  target_tracking::BearingMeasurement bearing;
   bearing.time = time;
   const Vector3 direction = (target.position_eci - servicer.position_eci).normalized();
-  bearing.direction_eci = (direction + bearing_axes(direction, servicer).topRows<2>().transpose() * error).normalized();
+  bearing.direction_eci =
+      (direction + target_tracking::bearing_axes(direction, servicer).topRows<2>().transpose() * error).normalized();
   bearing.sigma = sigma;
   return bearing;
 }
@@ -71,4 +73,4 @@ class Noise {
   std::normal_distribution<double> standard_;
 };
 
-}  // namespace vbar::fsw::navigation::test
+}  // namespace vbar::fsw::measurements::test

@@ -11,7 +11,7 @@
 namespace vbar::fsw::measurements {
 namespace {
 
-using namespace navigation::test;
+using namespace measurements::test;
 using filter::Burn;
 using filter::kAt;
 using filter::Propagation;

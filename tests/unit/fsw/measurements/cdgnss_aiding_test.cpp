@@ -381,7 +381,7 @@ namespace {
 /// A pair whose receivers wander by `true_mm`, and a filter that is configured for `configured_mm`, over 60 s.
 FilterPair wandering_pair(unsigned seed, double true_mm, double configured_mm) {
   FilterPair pair(seed, 3.2e-3 * std::sqrt(3.0), 1e-3);
-  for (filter::test::SyntheticReceiver* receiver : {&pair.servicer, &pair.target})
+  for (gnss::test::SyntheticReceiver* receiver : {&pair.servicer, &pair.target})
     receiver->wander_sigma_m = 1e-3 * true_mm;
   // Of a single difference: two receivers.
   pair.filter_settings.processes.of<PhaseWander>() = {.sigma = std::sqrt(2.0) * 1e-3 * configured_mm, .time_s = 60.0};

@@ -48,7 +48,7 @@ class KnownOrbit {
       : phase_sigma_m_(phase_sigma_m) {
     estimator->configure(known_orbit(wander_sigma_m));
     estimator->advance_to(time, {});
-    const orbit::CartesianState servicer = filter::test::servicer_start();
+    const orbit::CartesianState servicer = gnss::test::servicer_start();
     estimator->set_states(servicer, servicer);
     // A micrometre: known, and far above rounding.
     estimator->initialize_relative(Vector6::Zero(), 1e-26 * Matrix6::Identity(), filter::SolutionStatus::kEstimated);
@@ -241,7 +241,7 @@ namespace {
 /// Position at reception in extended precision is not available; that of a first-order map of the inertial state is,
 /// where the differences of positions of seven thousand kilometres are metres.
 struct Case {
-  orbit::CartesianState servicer = filter::test::servicer_start();
+  orbit::CartesianState servicer = gnss::test::servicer_start();
   orbit::QnsElements chief = orbit::qns_from_cartesian(servicer).value();
   Vector6 roe = Vector6(-0.5, 9.0, 3.0, -4.0, 2.0, 1.0) / chief.a;
 };

@@ -11,10 +11,10 @@
 #include "fsw/measurements/gnss_absolute_source.h"
 #include "tests/unit/fsw/gnss/synthetic_receivers.h"
 
-namespace vbar::fsw::sources::test {
+namespace vbar::fsw::measurements::test {
 
-using filter::test::kEarth;
-using filter::test::start_time;
+using gnss::test::kEarth;
+using gnss::test::start_time;
 
 /// Motion in the filter's own gravity field, of degree 20.
 inline orbit::CartesianState fly_in_full_gravity(const orbit::CartesianState& start, double seconds) {
@@ -22,7 +22,7 @@ inline orbit::CartesianState fly_in_full_gravity(const orbit::CartesianState& st
   return propagation.coast(start, seconds);
 }
 
-struct FilterPair : filter::test::CooperatingPair {
+struct FilterPair : gnss::test::CooperatingPair {
   explicit FilterPair(unsigned seed, double offset_m = 0.0, double jitter_m = 0.0)
       : CooperatingPair(seed, offset_m, jitter_m) {
     servicer.motion = target.motion = fly_in_full_gravity;
@@ -136,4 +136,4 @@ struct FilterPair : filter::test::CooperatingPair {
   std::unique_ptr<CdgnssAiding> carrier;
 };
 
-}  // namespace vbar::fsw::sources::test
+}  // namespace vbar::fsw::measurements::test

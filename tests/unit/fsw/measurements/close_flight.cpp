@@ -28,7 +28,6 @@ namespace {
 
 using fsw::Vector3;
 using fsw::Vector6;
-namespace nav = fsw::navigation;
 namespace orbit = fsw::orbit;
 
 constexpr double kDegree = fsw::math::kDegree;
@@ -46,7 +45,7 @@ Vector6 metres(double da, double dl, double dex, double dey, double dix, double 
 
 /// From one waypoint to the next by burns at equal times: of all that lead there, those of the least sum of squares.
 void plan_leg(const orbit::QnsElements& servicer_mean, double from_s, double to_s, const Vector6& start,
-              const Vector6& goal, fsw::GpsTime epoch, std::vector<nav::Burn>& burns) {
+              const Vector6& goal, fsw::GpsTime epoch, std::vector<fsw::filter::Burn>& burns) {
   constexpr int kBurns = 5;
   Eigen::MatrixXd reach(6, 3 * kBurns);
   const auto at = [&](double t) { return orbit::propagate_secular(servicer_mean, t); };
@@ -155,13 +154,14 @@ CloseFlight fly_closely(double hours) {
     epoch.servicer = model.state(0);
     epoch.target = model.state(1);
     epoch.sun_eci = ephemeris.at(truth::tt_of(settings.epoch, t)).sun_eci.normalized();
-    epoch.is_target_lit = nav::is_sunlit(epoch.target.position_eci, epoch.sun_eci);
+    epoch.is_target_lit = fsw::filter::is_sunlit(epoch.target.position_eci, epoch.sun_eci);
     flight.epochs.push_back(epoch);
   }
   return flight;
 }
 
-std::vector<nav::AttitudeState> tumble(const CloseFlight& flight, double rate_deg_s, unsigned seed, double torque_nm) {
+std::vector<fsw::filter::AttitudeState> tumble(const CloseFlight& flight, double rate_deg_s, unsigned seed,
+                                               double torque_nm) {
   std::mt19937 random(seed + 1000);
   std::normal_distribution<double> normal;
   const auto draw = [&] { return normal(random); };
@@ -187,7 +187,7 @@ std::vector<nav::AttitudeState> tumble(const CloseFlight& flight, double rate_de
   const Vector3 direction(draw(), draw(), draw());
   torques.push_back(std::make_unique<ConstantTorque>(torque_nm * direction.normalized()));
   truth::RigidBody body(tango_inertia(), std::move(torques), orbit_at, 1e-9, 0.0, start);
-  std::vector<nav::AttitudeState> attitudes;
+  std::vector<fsw::filter::AttitudeState> attitudes;
   for (std::size_t k = 0; k < flight.epochs.size(); ++k) {
     const double t = kImagePeriod_s * static_cast<double>(k);
     body.advance_to(t);
@@ -203,7 +203,7 @@ CloseFlightCamera close_flight_camera() {
   camera.optics.principal_point_px = {479.5, 299.5};
   camera.optics.distortion = {-0.22383, 0.514098, -0.000664997, -0.000214048, -0.131243};
   camera.position_camera_m = {0.1, -0.05, 0.35};
-  camera.inertia = must(nav::inertia_of(tango_inertia()));
+  camera.inertia = must(fsw::filter::inertia_of(tango_inertia()));
   camera.shape = tango_shape();
   return camera;
 }
@@ -240,13 +240,13 @@ Matrix3 camera_to(const fsw::orbit::CartesianState& servicer, const fsw::orbit::
 
 }  // namespace
 
-SimulatedNetwork::SimulatedNetwork(const CloseFlight& flight, const std::vector<nav::AttitudeState>& attitudes,
+SimulatedNetwork::SimulatedNetwork(const CloseFlight& flight, const std::vector<fsw::filter::AttitudeState>& attitudes,
                                    const KeypointErrors& errors, unsigned seed)
     : flight_(flight), attitudes_(attitudes), errors_(errors), random_(seed) {
   attitude_bias_ = 0.7 * errors.attitude_arcsec * kArcsec * normal3();
   gnss_slow_ = normal3();
   for (Vector2& lasting : lasting_) lasting = normal3().head<2>();
-  for (nav::Burn burn : flight.burns) {
+  for (fsw::filter::Burn burn : flight.burns) {
     burn.dv_rtn += errors.burn_relative * burn.dv_rtn.norm() * normal3();
     known_burns_.push_back(burn);
   }

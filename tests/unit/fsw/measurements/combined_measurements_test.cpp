@@ -19,14 +19,14 @@
 namespace vbar::fsw::measurements {
 namespace {
 
-using filter::test::bearing_of;
-using filter::test::Noise;
+using measurements::test::bearing_of;
+using measurements::test::Noise;
 using test::kEarth;
 
-constexpr double kBearingSigma = 12.0 * filter::test::kArcsec;
+constexpr double kBearingSigma = 12.0 * measurements::test::kArcsec;
 
 Vector3 sun() {
-  return filter::test::scene_sun();
+  return measurements::test::scene_sun();
 }
 
 /// The cooperating pair at a kilometre on a passively safe orbit, with a camera beside the receivers.

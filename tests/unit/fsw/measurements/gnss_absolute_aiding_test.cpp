@@ -16,8 +16,8 @@
 namespace vbar::fsw::measurements {
 namespace {
 
+using gnss::test::kEarth;
 using test::FilterPair;
-using test::kEarth;
 
 TEST(GnssAbsoluteAiding, ConvergesFromTheFirstTwoPositions) {
   FilterPair pair(31);

@@ -15,7 +15,7 @@ namespace vbar::fsw::measurements {
 
 namespace {
 
-using namespace navigation::test;
+using namespace measurements::test;
 using filter::kAt;
 
 class KeypointRows : public testing::Test {
@@ -268,19 +268,19 @@ TEST_F(ResolutionTest, TheSizeOfASmallImageIsLessCertain) {
 
 TEST(ExposureScheduler, EveryOtherImageIsForBearingsWhileKeypointsDoNotAid) {
   ExposureScheduler scheduler;
-  EXPECT_FALSE(turns.is_bearing_due());
+  EXPECT_FALSE(scheduler.is_bearing_due());
   for (int pair = 0; pair < 3; ++pair) {
-    turns.take_keypoints(0.7, false);
-    EXPECT_TRUE(turns.is_bearing_due());
-    turns.take_bearing();
-    EXPECT_FALSE(turns.is_bearing_due());
+    scheduler.take_keypoints(0.7, false);
+    EXPECT_TRUE(scheduler.is_bearing_due());
+    scheduler.take_bearing();
+    EXPECT_FALSE(scheduler.is_bearing_due());
   }
-  turns.take_keypoints(0.7, true);
-  EXPECT_FALSE(turns.is_bearing_due());
-  turns.take_keypoints(1.2, false);
-  EXPECT_FALSE(turns.is_bearing_due()) << "too close for stars";
-  turns.take_keypoints(std::nullopt, false);
-  EXPECT_FALSE(turns.is_bearing_due()) << "at an unknown range";
+  scheduler.take_keypoints(0.7, true);
+  EXPECT_FALSE(scheduler.is_bearing_due());
+  scheduler.take_keypoints(1.2, false);
+  EXPECT_FALSE(scheduler.is_bearing_due()) << "too close for stars";
+  scheduler.take_keypoints(std::nullopt, false);
+  EXPECT_FALSE(scheduler.is_bearing_due()) << "at an unknown range";
 }
 
 TEST(TwoExposures, TheExposureStatesTheUse) {

@@ -14,8 +14,8 @@ namespace vbar::fsw::measurements {
 
 namespace {
 
-using messaging::test::carrier;
-using messaging::test::receiver;
+using gnc::test::receiver;
+using measurements::test::carrier;
 
 TEST(CarrierSettings, AreThoseOfTheMessages) {
   const auto settings = carrier_settings(carrier(), receiver());
@@ -74,9 +74,9 @@ TEST(CarrierSettings, InvalidFieldsAreRefused) {
 
 namespace {
 
-using messaging::test::camera;
-using messaging::test::pose;
-using messaging::test::target_shape;
+using gnc::test::camera;
+using gnc::test::pose;
+using gnc::test::target_shape;
 
 TEST(KeypointSettings, AreThoseOfTheMessages) {
   camera_configuration turned = camera();

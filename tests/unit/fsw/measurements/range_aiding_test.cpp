@@ -8,7 +8,7 @@
 namespace vbar::fsw::measurements {
 namespace {
 
-using namespace navigation::test;
+using namespace measurements::test;
 using filter::SolutionStatus;
 
 constexpr int kBias = filter::kAt<RangeBias>;

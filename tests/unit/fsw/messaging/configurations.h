@@ -2,9 +2,6 @@
 // Valid telecommands of navigation; a test changes what it is about.
 
 #include <cstdint>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 #include "fsw/packets/messages.h"
 #include "tests/support/tango_view.h"
@@ -159,27 +156,6 @@ inline target_apriori target(const Vector6& mean_a_roe_m) {
     apriori.sigma_a_roe_m[k] = 2.0;
   }
   return apriori;
-}
-
-// Packets as a mission's host makes them, for tests of the flight software.
-
-using Bytes = std::vector<std::uint8_t>;
-
-inline constexpr std::uint8_t kServicer = 1;
-
-template <class Message>
-Bytes packet_of(GpsTime time, const Message& message, std::uint16_t sequence = 0, std::uint8_t spacecraft = kServicer,
-                std::uint8_t unit = 0) {
-  packets::PacketHeader header;
-  header.time = time;
-  header.spacecraft = spacecraft;
-  header.unit = unit;
-  header.sequence_count = sequence;
-  Bytes bytes(packets::kMaxPacketBytes);
-  const auto size = packets::encode(header, message, bytes);
-  EXPECT_TRUE(size.ok());
-  bytes.resize(size.ok() ? size.value() : 0);
-  return bytes;
 }
 
 }  // namespace vbar::fsw::gnc::test

@@ -13,9 +13,9 @@ namespace vbar::fsw::messaging {
 
 namespace {
 
-using test::Bytes;
-using test::kServicer;
-using test::packet_of;
+using gnc::test::Bytes;
+using gnc::test::kServicer;
+using gnc::test::packet_of;
 
 TEST(Inbox, FilesByTimeTagWhateverTheOrderOfArrival) {
   Inbox inbox(kServicer);
@@ -211,7 +211,7 @@ class OutboxTest : public ::testing::Test {
   }
 
   std::vector<Bytes> sent_;
-  Outbox outbox_{test::kServicer, &OutboxTest::sink, &sent_};
+  Outbox outbox_{gnc::test::kServicer, &OutboxTest::sink, &sent_};
 };
 
 TEST_F(OutboxTest, CountsEachKindByItself) {
@@ -224,7 +224,7 @@ TEST_F(OutboxTest, CountsEachKindByItself) {
   const std::uint16_t expected[] = {0, 0, 1, 0, 0};
   for (std::size_t k = 0; k < 5; ++k) {
     EXPECT_EQ(header(k).sequence_count, expected[k]) << k;
-    EXPECT_EQ(header(k).spacecraft, test::kServicer);
+    EXPECT_EQ(header(k).spacecraft, gnc::test::kServicer);
   }
   EXPECT_EQ(header(2).time.ns, 20);
 }

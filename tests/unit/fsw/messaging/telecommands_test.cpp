@@ -13,7 +13,9 @@
 #include "tests/unit/fsw/gnc/small_world.h"
 #include "tests/unit/fsw/messaging/configurations.h"
 
-namespace vbar::fsw::gnc::test {
+namespace vbar::fsw::messaging {
+
+using namespace gnc::test;
 
 namespace {
 
@@ -31,7 +33,7 @@ class TelecommandsTest : public ::testing::Test {
   /// The acknowledgments of a step at `ns`.
   std::vector<telemetry_telecommand> step(std::int64_t ns) {
     sent_.clear();
-    telecommands_.update({ns}, inbox_, telecommand_rules());
+    telecommands_.update({ns}, inbox_, gnc::telecommand_rules());
     telecommands_.report(outbox_, step_++, {ns});
     inbox_.clear(GpsTime{});
     return sent_;
@@ -85,7 +87,7 @@ TEST_F(TelecommandsTest, EveryKindIsStored) {
   send(1, target_shape());
   send(1, camera());
   send(1, angles_only());
-  send(1, pose());
+  send(1, gnc::test::pose());
   send(1, ranges());
   send(1, target(SmallWorld(Vector6::Constant(100.0))));
   send(1, table_of({waypoint_at(1, 60, 0, Vector6::Zero())}));
@@ -152,7 +154,7 @@ TEST_F(TelecommandsTest, CamerasHaveTwoUnits) {
 TEST_F(TelecommandsTest, AContradictionIsRefusedAndTheOldOneStays) {
   constexpr std::int32_t kBoth = kOwnAndKeypoints + navigation_configuration::kUseBearings;
   send(1, angles_only());
-  send(1, pose());
+  send(1, gnc::test::pose());
   send(1, navigation(kOwnAndKeypoints));
   for (const auto& acknowledgment : step(1)) EXPECT_EQ(acknowledgment.status, telemetry_telecommand::kStatusAccepted);
   send(2, navigation(kBoth));
@@ -164,7 +166,7 @@ TEST_F(TelecommandsTest, AContradictionIsRefusedAndTheOldOneStays) {
 
 TEST_F(TelecommandsTest, ACameraWithTwoExposuresFeedsBoth) {
   auto bearings = angles_only();
-  auto keypoints = pose();
+  auto keypoints = gnc::test::pose();
   bearings.exposure_s = 0.2;
   keypoints.exposure_s = 1e-5;
   send(1, bearings);
@@ -367,4 +369,4 @@ TEST(TelecommandOrder, HasNoEffectOnATableThatHasPassed) {
 
 }  // namespace
 
-}  // namespace vbar::fsw::gnc::test
+}  // namespace vbar::fsw::messaging

@@ -11,8 +11,8 @@
 namespace vbar::fsw::navigation {
 namespace {
 
-using test::kServicer;
-using test::packet_of;
+using gnc::test::kServicer;
+using gnc::test::packet_of;
 
 constexpr std::int64_t kSecond = kNanosecondsPerSecond;
 

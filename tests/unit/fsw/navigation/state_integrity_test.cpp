@@ -5,7 +5,9 @@
 #include "tests/unit/fsw/gnc/bit_flips.h"
 #include "tests/unit/fsw/gnc/small_world.h"
 
-namespace vbar::fsw::gnc::test {
+namespace vbar::fsw::navigation {
+
+using namespace gnc::test;
 namespace {
 
 std::span<unsigned char> estimate_in(Article& article) {
@@ -62,4 +64,4 @@ TEST(StateIntegrity, OfAFilterAndItsCopy) {
 }
 
 }  // namespace
-}  // namespace vbar::fsw::gnc::test
+}  // namespace vbar::fsw::navigation

@@ -17,7 +17,7 @@
 
 namespace {
 
-using namespace vbar::fsw::network;
+using namespace vbar::fsw::pose;
 using vbar::fsw::Status;
 using vbar::test::Crop;
 

@@ -31,7 +31,7 @@ inline void seal(WeightsFile& file) {
 
 /// All weights 0.
 inline WeightsFile blank_file() {
-  using namespace fsw::network;
+  using namespace fsw::pose;
   WeightsFile file(kFileBytes);
   std::memcpy(file.data(), kMagic, kMagicBytes);
   std::size_t offset = kMagicBytes;
@@ -59,7 +59,7 @@ inline std::size_t place_of_weight(int layer, std::size_t k) {
 /// `number(layer, k)` for every weight k of a layer and, from layer.weights() on, every bias.
 template <class Number>
 WeightsFile file_of(Number&& number) {
-  using namespace fsw::network;
+  using namespace fsw::pose;
   WeightsFile file = blank_file();
   for (int l = 0; l < kLayerCount; ++l) {
     const Layer& layer = kLayers[static_cast<std::size_t>(l)];

@@ -9,7 +9,7 @@
 
 namespace {
 
-using namespace vbar::fsw::network;
+using namespace vbar::fsw::pose;
 using vbar::fsw::Status;
 using vbar::test::WeightsFile;
 

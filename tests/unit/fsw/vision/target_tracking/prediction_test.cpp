@@ -17,7 +17,7 @@
 namespace {
 
 using namespace vbar::fsw;
-using namespace vbar::fsw::tracking;
+using namespace vbar::fsw::target_tracking;
 namespace mission = vbar::fsw::orbit::mission;
 
 orbit::RelativeState some_state() {

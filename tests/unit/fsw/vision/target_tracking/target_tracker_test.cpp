@@ -16,7 +16,7 @@
 namespace {
 
 using namespace vbar::fsw;
-using namespace vbar::fsw::tracking;
+using namespace vbar::fsw::target_tracking;
 using namespace vbar::testing;
 
 Vector6 six(double a, double b, double c, double d, double e, double f) {
