@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "fsw/gnc/telecommand_checks.h"
 #include "fsw/orbit/rtn.h"
 #include "fsw/packets/messages.h"
 #include "host_sim/installation/navigation_telecommands.h"
@@ -174,10 +175,10 @@ int EmulatedPair::wrong_integers() const {
 
 void EmulatedPair::hold(std::size_t place, std::size_t reference, double cycles) {
   // The navigation is this object's own and not const: reaching into it is what the mistakes consist of.
-  auto& filter = const_cast<CarrierFilter&>(carrier().filter());  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+  auto& phases = const_cast<CarrierFilter&>(carrier().filter());  // NOLINT(cppcoreguidelines-pro-type-const-cast)
   auto& estimator =
       const_cast<fsw::filter::RelativeNavigationFilter&>(filter());  // NOLINT(cppcoreguidelines-pro-type-const-cast)
-  filter.hold(estimator, place, reference, cycles);
+  phases.hold(estimator, place, reference, cycles);
 }
 
 std::optional<EmulatedPair::Offer> EmulatedPair::offer() const {
