@@ -224,7 +224,7 @@ TEST(Queues, OfMeasurementsKeepWhatTheyHave) {
   const Answer answer = flight.step();
   EXPECT_EQ(answer.health.inbox_dropped, 7);
   EXPECT_EQ(answer.health.faults, telemetry_health::kFaultInboxFull);
-  EXPECT_EQ(answer.health.packets_accepted, Inbox::kCapacity<ideal_navigation> + 1);  // and the tick
+  EXPECT_EQ(answer.health.packets_accepted, messaging::Inbox::kCapacity<ideal_navigation> + 1);  // and the tick
   EXPECT_NEAR(answer.navigation.relative_position_rtn[1], -100.0, 10.0);  // not the -10 m of the dropped ones
 
   // The next step has all its room again.
@@ -246,10 +246,10 @@ TEST(Queues, OfManeuversAndTelecommandsKeepWhatTheyHave) {
       ++dropped;
     }
   };
-  fill(Inbox::kCapacity<executed_maneuver>, tiny_maneuver(99));
-  fill(Inbox::kCapacity<gnc_configuration>, configuration());
-  fill(Inbox::kCapacity<waypoint_table>, table_of({waypoint_at(8, 3 * 3600, 1, kNear)}));
-  fill(Inbox::kCapacity<mode_command>, mode(1));
+  fill(messaging::Inbox::kCapacity<executed_maneuver>, tiny_maneuver(99));
+  fill(messaging::Inbox::kCapacity<gnc_configuration>, configuration());
+  fill(messaging::Inbox::kCapacity<waypoint_table>, table_of({waypoint_at(8, 3 * 3600, 1, kNear)}));
+  fill(messaging::Inbox::kCapacity<mode_command>, mode(1));
   const Answer answer = flight.step();
   EXPECT_EQ(answer.health.inbox_dropped, dropped);
   EXPECT_EQ(answer.control.mode, 1);
@@ -305,7 +305,7 @@ TEST(Queues, CommandsOfAStepAreBounded) {
   const Answer answer = flight.article.step(flight.now, duration_of_seconds(4 * 3600));
   EXPECT_EQ(answer.control.planned_burns, 0) << "all burns of the leg are due before the next step";
   EXPECT_GT(answer.commands.size(), 1U);
-  EXPECT_LE(answer.commands.size(), Guidance::kMaxCommandsPerStep);
+  EXPECT_LE(answer.commands.size(), guidance::Guidance::kMaxCommandsPerStep);
   EXPECT_EQ(answer.control.commanded_maneuvers, static_cast<std::int32_t>(answer.commands.size()));
 }
 

@@ -14,8 +14,8 @@ namespace vbar::fsw::measurements {
 
 namespace {
 
+using gnc::test::carrier;
 using gnc::test::receiver;
-using measurements::test::carrier;
 
 TEST(CarrierSettings, AreThoseOfTheMessages) {
   const auto settings = carrier_settings(carrier(), receiver());

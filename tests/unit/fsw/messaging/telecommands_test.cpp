@@ -177,7 +177,7 @@ TEST_F(TelecommandsTest, ACameraWithTwoExposuresFeedsBoth) {
 
 TEST_F(TelecommandsTest, OfTwoThatContradictTheLaterOfTheListIsRefused) {
   constexpr std::int32_t kBoth = kOwnAndKeypoints + navigation_configuration::kUseBearings;
-  send(1, pose(), 0, 1);
+  send(1, gnc::test::pose(), 0, 1);
   send(1, navigation(kBoth));
   send(1, angles_only(), 0, 1);
   const auto acknowledgments = step(1);
@@ -187,7 +187,7 @@ TEST_F(TelecommandsTest, OfTwoThatContradictTheLaterOfTheListIsRefused) {
   EXPECT_EQ(acknowledgments[2].status, telemetry_telecommand::kStatusContradiction);
   EXPECT_EQ(telecommands_.in_force<pose_configuration>(1), nullptr);
   // Of another camera they agree.
-  send(2, pose(), 0, 0);
+  send(2, gnc::test::pose(), 0, 0);
   EXPECT_EQ(status_of_step(2), telemetry_telecommand::kStatusAccepted);
 }
 
@@ -317,7 +317,7 @@ std::vector<Bytes> mission_of(std::int32_t sources, const waypoint_table& table,
           packet_of(kEpoch, target_shape()),
           packet_of(kEpoch, camera()),
           packet_of(kEpoch, angles_only()),
-          packet_of(kEpoch, pose()),
+          packet_of(kEpoch, gnc::test::pose()),
           packet_of(kEpoch, target(kStart)),
           packet_of(kEpoch, table),
           packet_of(kEpoch, guidance),
