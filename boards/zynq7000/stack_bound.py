@@ -26,9 +26,11 @@ BOARD = r"^vbar::boards::zynq7000::\(anonymous namespace\)::FlightBoard::"
 INDIRECT = [
     (r"^vbar_interrupt$", [r"^vbar::boards::zynq7000::(Uart|Ethernet)::on_interrupt\(", r"^vbar::boards::zynq7000::\(anonymous namespace\)::on_expiry\(", r"^vbar::boards::zynq7000::\(anonymous namespace\)::start_wake_timer\(\)::.*_FUN\("]),
     # packets to the sink
-    (r"^void vbar::fsw::gnc::Outbox::send<", SINK),
+    (r"^void vbar::fsw::messaging::Outbox::send<", SINK),
     (r"^vbar::fsw::gnc::Gnc::(report_|point_|command_|report\(|command\()", SINK),
-    (r"^vbar::fsw::sources::\w+::report\w*\(", SINK),
+    (r"^vbar::fsw::(measurements|messaging|navigation)::\w+::report\w*\(", SINK),
+    # the rules of telecommands
+    (r"^vbar::fsw::messaging::Telecommands::", [r"^vbar::fsw::gnc::\(anonymous namespace\)::(are_consistent\(|set<.*_FUN\()"]),
     # the platform of the executive
     (r"^vbar::boards::FlightExecutive::", [BOARD + r"(open_receiver|read_receiver|send|session_begins|step_begins|step_ends)\(",
                                            BOARD + r"platform\(\)::.*_FUN\("]),
