@@ -9,13 +9,13 @@
 
 namespace vbar::testbeds {
 
-/// Drivers of this program, for testbeds::install; those of the object vbar_hil_benches as far as it is linked
+/// Drivers of this program, for testbeds::install; those of the object vbar_optional_testbeds as far as it is linked
 /// (optional_testbeds.h).
 [[nodiscard]] Drivers drivers();
 
 // Testbeds whose drivers need libraries of displays and cameras. A program has these drivers if it links the object
-// vbar_hil_benches (optional_testbeds.cpp), as vbar_hil does; otherwise the library of testbeds gives it stand-ins
-// (optional_testbeds_missing.cpp).
+// vbar_optional_testbeds (optional_testbeds.cpp), as vbar_hil does; otherwise the library of testbeds gives it
+// stand-ins (optional_testbeds_missing.cpp).
 
 [[nodiscard]] std::span<const TestbedKind* const> optional_testbeds();
 

@@ -130,7 +130,6 @@ void RangeSource::process_record(const Record& record, Context& /*context*/, fil
 
 void RangeSource::report(const Telemetry& telemetry) const {
   if (!processed_) return;
-  constexpr int kBias = filter::kAt<RangeBias>;
   telemetry_range message{};
   message.step = telemetry.step;
   message.range_m = range_m_;

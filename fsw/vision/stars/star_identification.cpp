@@ -176,7 +176,6 @@ std::size_t StarIdentifier::cast_votes(std::span<const ObservedStar> objects, co
   if (!near.ok()) return 0;
   // Length of the shift: two axes across the boresight, and the effect of roll at the edge of the field.
   const double reach = tolerance * 1.5;
-  constexpr MagnitudeGate kGate;
   std::size_t votes = 0;
   for (int k = 0; k < near.value(); ++k) {
     const int star = in_cone_[static_cast<std::size_t>(k)];

@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "host_sim/io/byte_channel.h"
+#include "tests/support/sanitizers.h"
 
 namespace vbar::io {
 namespace {
@@ -59,9 +60,7 @@ TEST(ChildProcess, LeavesNothingBehindThatItStarted) {
 }
 
 TEST(ChildProcess, AnAllocationBeyondItsMemoryFails) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "memory is not limited in a program with address sanitizer";
-#endif
+  if (vbar::test::kAddressSanitizer) GTEST_SKIP() << "memory is not limited in a program with address sanitizer";
   constexpr std::uint64_t kLimit = std::uint64_t{64} << 20;
   const auto doubled = [](std::uint64_t memory_bytes) {  // a text of 256 MB
     ChildProcess child({"sh", "-c", "x=x; i=0; while [ $i -lt 28 ]; do x=$x$x; i=$((i+1)); done; echo ${#x}"}, {},
