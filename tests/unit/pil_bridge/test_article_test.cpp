@@ -10,6 +10,7 @@
 
 #include "pil_bridge/make_flight_computer.h"
 #include "tests/support/paths.h"
+#include "tests/support/sanitizers.h"
 #include "tests/support/step_packets.h"
 
 namespace vbar::pil {
@@ -110,9 +111,7 @@ TEST(LibraryInChild, ErrorsOfTheSoftwareAreCounted) {
 }
 
 TEST(LibraryInChild, ItsMemoryIsLimited) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "memory is not limited in a program with address sanitizer";
-#endif
+  if (vbar::test::kAddressSanitizer) GTEST_SKIP() << "memory is not limited in a program with address sanitizer";
   EXPECT_THAT(
       [] {
         (void)library_in_child(kLibraries + "libvbar_article_with_faults.so", 7, std::chrono::minutes(1))

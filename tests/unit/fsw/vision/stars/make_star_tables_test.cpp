@@ -37,9 +37,9 @@ class MakeStarTables : public testing::Test {
     std::string message;
   };
   [[nodiscard]] Outcome run(const std::string& star_file, const std::string& epoch = "2011.55") const {
-    const std::string command = vbar::tests::build_path("fsw/vision/stars/make_star_tables ") + star_file + " " + epoch + " " +
-                                (folder_ / "tables").string() + " " + (folder_ / "sizes").string() + " 2> " +
-                                (folder_ / "message").string();
+    const std::string command = vbar::tests::build_path("fsw/vision/stars/make_star_tables ") + star_file + " " +
+                                epoch + " " + (folder_ / "tables").string() + " " + (folder_ / "sizes").string() +
+                                " 2> " + (folder_ / "message").string();
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content_of(folder_ / "message")};
   }
