@@ -230,6 +230,16 @@ void RelativeNavigationFilter::inflate_relative(double velocity_sigma, double al
   relative_orbit_.inflate(estimate_, servicer(), velocity_sigma, along_track_sigma_m / chief.value().a);
 }
 
+void RelativeNavigationFilter::inflate_by_burn(GpsTime since, double velocity_sigma) {
+  constexpr double kLongest_s = 6000.0;
+  if (!has_relative() || !(velocity_sigma > 0.0)) return;
+  const double elapsed_s = seconds(epoch_ - since);
+  const double dt = elapsed_s < kLongest_s ? elapsed_s : kLongest_s;
+  constexpr double kShortest_s = 1e-3;
+  relative_orbit_.inflate_by_burn(estimate_, servicer(), velocity_sigma, dt > kShortest_s ? dt : kShortest_s);
+  finish_update();
+}
+
 void RelativeNavigationFilter::scale_relative_covariance(double factor) {
   if (!has_relative() || !(factor > 1.0)) return;
   estimate_.transform_head<6>(roe(), Matrix6::Identity(), (factor - 1.0) * roe_covariance());

@@ -162,6 +162,9 @@ class RelativeNavigationFilter {
   /// Inflates the relative orbit after contradicting measurements, as after an unknown burn of `velocity_sigma`, m/s,
   /// with a sigma of the distance along track, m.
   void inflate_relative(double velocity_sigma, double along_track_sigma_m);
+  /// Inflates the relative orbit as after a burn of `velocity_sigma`, m/s per axis, at an unknown time since `since`:
+  /// an estimate that measurements have confirmed then can have become wrong in this way only. At most an orbit back.
+  void inflate_by_burn(GpsTime since, double velocity_sigma);
   /// Multiplies the covariance of the relative orbit by `factor`, the mean normalised square by which the innovations
   /// of a source are larger than its covariances state.
   void scale_relative_covariance(double factor);

@@ -16,6 +16,23 @@ constexpr double square(double x) {
   return x * x;
 }
 
+/// Adds to the covariance of the ROE that of a white acceleration in RTN (power spectral density m^2/s^3, per axis)
+/// over the next `dt` s, or of changes of velocity at random times with a variance of psd * dt in all: by three-point
+/// Gauss quadrature in the interval. Gamma maps an impulse to the elements, and only the mean longitude drifts.
+void add_velocity_noise(const orbit::QnsElements& servicer, double psd, double dt, Matrix6& noise) {
+  constexpr std::array<double, 3> kAtShare = {0.1127016653792583, 0.5, 0.8872983346207417};
+  constexpr std::array<double, 3> kWeight = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+  const double n = orbit::mean_motion(servicer.a);
+  for (std::size_t k = 0; k < 3; ++k) {
+    orbit::QnsElements then = servicer;
+    then.u += n * kAtShare[k] * dt;
+    Matrix63 gamma = orbit::roe_control_matrix_near_circular(then);
+    gamma.row(1) -= 1.5 * n * (1.0 - kAtShare[k]) * dt * gamma.row(0);
+    const double weight = kWeight[k] * dt * psd;
+    noise += (weight * gamma).lazyProduct(gamma.transpose());
+  }
+}
+
 }  // namespace
 
 void RelativeOrbit::configure(const RelativeOrbitSettings& settings) {
@@ -83,25 +100,11 @@ bool RelativeOrbit::advance(const Estimate& estimate, const OrbitStep& step, Hea
     }
   } else {
     // White noise stands for the same effects.
-    add_process_noise(before.value(), step.dt, motion);
+    Matrix6 noise = motion.noise.topLeftCorner<6, 6>();
+    add_velocity_noise(before.value(), noise_.psd(), step.dt, noise);
+    motion.noise.topLeftCorner<6, 6>() = noise;
   }
   return true;
-}
-
-/// White accelerations in RTN, by three-point Gauss quadrature in the interval: Gamma maps an impulse to the elements,
-/// and only the mean longitude drifts.
-void RelativeOrbit::add_process_noise(const orbit::QnsElements& servicer, double dt, HeadMotion& motion) const {
-  constexpr std::array<double, 3> kAtShare = {0.1127016653792583, 0.5, 0.8872983346207417};
-  constexpr std::array<double, 3> kWeight = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
-  const double n = orbit::mean_motion(servicer.a);
-  for (std::size_t k = 0; k < 3; ++k) {
-    orbit::QnsElements then = servicer;
-    then.u += n * kAtShare[k] * dt;
-    Matrix63 gamma = orbit::roe_control_matrix_near_circular(then);
-    gamma.row(1) -= 1.5 * n * (1.0 - kAtShare[k]) * dt * gamma.row(0);
-    const double weight = kWeight[k] * dt * noise_.psd();
-    motion.noise.topLeftCorner<6, 6>() += (weight * gamma).lazyProduct(gamma.transpose());
-  }
 }
 
 bool RelativeOrbit::impulse(Estimate& estimate, const orbit::CartesianState& servicer, const Vector3& dv_eci,
@@ -132,6 +135,19 @@ void RelativeOrbit::inflate(Estimate& estimate, const orbit::CartesianState& ser
   const Matrix63 gamma = orbit::roe_control_matrix(chief.value());
   Matrix6 noise = (square(velocity_sigma) * gamma).lazyProduct(gamma.transpose());
   noise(1, 1) += square(longitude_sigma);
+  const Vector6 roe = estimate.mean().head<6>();
+  estimate.transform_head<6>(roe, Matrix6::Identity(), noise);
+  noise_.interrupt();
+}
+
+void RelativeOrbit::inflate_by_burn(Estimate& estimate, const orbit::CartesianState& servicer, double velocity_sigma,
+                                    double dt) {
+  const auto chief = orbit::qns_from_cartesian(servicer);
+  if (!chief.ok() || !(dt > 0.0)) return;
+  orbit::QnsElements before = chief.value();
+  before.u -= orbit::mean_motion(before.a) * dt;
+  Matrix6 noise = Matrix6::Zero();
+  add_velocity_noise(before, square(velocity_sigma) / dt, dt, noise);
   const Vector6 roe = estimate.mean().head<6>();
   estimate.transform_head<6>(roe, Matrix6::Identity(), noise);
   noise_.interrupt();

@@ -62,12 +62,14 @@ class RelativeOrbit {
   void inflate(Estimate& estimate, const orbit::CartesianState& servicer, double velocity_sigma,
                double longitude_sigma);
 
+  /// Inflates the covariance as after a burn of `velocity_sigma` (m/s, per axis) at an unknown time of the last `dt` s;
+  /// `servicer` now.
+  void inflate_by_burn(Estimate& estimate, const orbit::CartesianState& servicer, double velocity_sigma, double dt);
+
   [[nodiscard]] filter::AdaptiveNoise& noise() { return noise_; }
   [[nodiscard]] const filter::AdaptiveNoise& noise() const { return noise_; }
 
  private:
-  void add_process_noise(const orbit::QnsElements& servicer, double dt, HeadMotion& motion) const;
-
   RelativeOrbitSettings settings_;
   filter::AdaptiveNoise noise_;
 };

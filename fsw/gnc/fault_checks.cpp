@@ -55,7 +55,8 @@ void Gnc::check_navigation() {
 void Gnc::check_drift(const safety_configuration& safety) {
   if (!assessment_.is_known) return;
   const double keep_out = guidance_.keep_out(management_.configuration());
-  const bool is_unsafe = guidance_.is_holding() && assessment_.passive_distance < keep_out;
+  const bool is_known = is_drift_known(safety);
+  const bool is_unsafe = is_known && guidance_.is_holding() && assessment_.passive_distance < keep_out;
   if (!is_unsafe) unsafe_since_.reset();
   if (is_unsafe && !unsafe_since_) unsafe_since_ = now_;
   const bool has_lasted = unsafe_since_ && seconds(now_ - *unsafe_since_) >= safety.retreat_delay_s;
@@ -63,9 +64,20 @@ void Gnc::check_drift(const safety_configuration& safety) {
   faults_.check(now_, {.fault = telemetry_health::kFaultDriftUnsafe,
                        .is_detected = has_lasted || must_leave,
                        .argument = assessment_.passive_distance});
-  faults_.check(now_, {.fault = telemetry_health::kFaultCollisionProbability,
-                       .is_detected = assessment_.collision_probability > safety.maximum_collision_probability,
-                       .argument = assessment_.collision_probability});
+  faults_.check(now_,
+                {.fault = telemetry_health::kFaultCollisionProbability,
+                 .is_detected = is_known && assessment_.collision_probability > safety.maximum_collision_probability,
+                 .argument = assessment_.collision_probability});
+}
+
+/// Distance and probability of collision of an orbit that has hardly been measured are those of ignorance, not of the
+/// drift, which the ground chose. They count once the position a revolution later has been known to three sigma
+/// within the contact distance, or after the delay that a retreat is allowed.
+bool Gnc::is_drift_known(const safety_configuration& safety) {
+  if (!assessed_since_) assessed_since_ = now_;
+  has_settled_ = has_settled_ || assessment_.position_bound_m < safety.contact_distance_m ||
+                 seconds(now_ - *assessed_since_) >= safety.retreat_delay_s;
+  return has_settled_;
 }
 
 /// Reports mode retreat as a fault, with the size of its burn.

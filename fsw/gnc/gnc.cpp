@@ -3,6 +3,12 @@
 #include "fsw/gnc/telecommand_checks.h"
 
 namespace vbar::fsw::gnc {
+namespace {
+
+// A mode that was commanded longer before the first step than this is that of a computer that has lost its state.
+constexpr Duration kStaleCommand = duration_of_seconds(60);
+
+}  // namespace
 
 Gnc::Gnc(std::uint8_t spacecraft, vbar_packet_sink sink, void* sink_context)
     : inbox_(spacecraft), outbox_(spacecraft, sink, sink_context) {}
@@ -46,6 +52,9 @@ void Gnc::begin_step(GpsTime now) {
 void Gnc::manage() {
   telecommands_.update(now_, inbox_, telecommand_rules());
   management_.update(now_, telecommands_);
+  if (telecommands_.is_new<mode_command>()) {
+    is_cautious_ = management_.safety() != nullptr && started_ - telecommands_.time_of<mode_command>() > kStaleCommand;
+  }
   if (telecommands_.is_new<fault_command>()) {
     faults_.clear(now_, telecommands_.in_force<fault_command>()->clear);
   }
@@ -90,6 +99,7 @@ void Gnc::respond() {
   if (safety == nullptr) return;
   check_drift(*safety);
   const bool is_demanded = faults_.demands(faults::Response::kRetreat);
+  proceed_with_caution(*safety, is_demanded);
   const bool was_retreating = retreat_.phase() != guidance::RetreatSequence::Phase::kNone;
   if (is_demanded) management_.retreat();
   const bool is_retreating = management_.mode() == guidance::Mode::kRetreat;
@@ -105,6 +115,17 @@ void Gnc::respond() {
         management_);
   }
   check_retreat();
+}
+
+/// A retreat that was under way when the state was lost is unknown. The approach is therefore resumed only after
+/// navigation has been valid, and no fault has demanded a retreat, for the delay that a retreat is allowed.
+void Gnc::proceed_with_caution(const safety_configuration& safety, bool is_demanded) {
+  if (is_cautious_) {
+    if (is_demanded || !navigation_.state().valid) cautious_since_.reset();
+    if (!cautious_since_ && navigation_.state().valid && !is_demanded) cautious_since_ = now_;
+    is_cautious_ = !cautious_since_ || seconds(now_ - *cautious_since_) < safety.retreat_delay_s;
+  }
+  management_.suspend(is_cautious_);
 }
 
 void Gnc::control() {

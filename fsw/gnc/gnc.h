@@ -40,6 +40,8 @@ struct GncState {
   fdir::ImageWatch images_;
   std::optional<vbar::attitude> attitude_;  ///< the last one received, for the safety monitor
   std::optional<GpsTime> unsafe_since_;     ///< time since which no plan leaves an unsafe drift
+  std::optional<GpsTime> assessed_since_;   ///< time of the first assessment of the drift
+  std::optional<GpsTime> cautious_since_;   ///< after a restart: time since which navigation has been valid
   GpsTime now_;
   GpsTime started_;  ///< time of the first step
   std::int64_t step_ = 0;
@@ -49,6 +51,8 @@ struct GncState {
   Duration promised_period_;          ///< time from the last step to this one, as its tick stated; 0 unknown
   bool stepped_ = false;
   bool has_navigated_ = false;  ///< navigation was valid since the first step
+  bool has_settled_ = false;    ///< the drift has been known well enough to judge its probability of collision
+  bool is_cautious_ = false;    ///< the mode was commanded long before the first step: what happened since is lost
 };
 
 class Gnc : private GncState {
@@ -83,6 +87,7 @@ class Gnc : private GncState {
   void supervise();
   /// Derives the responses to faults: the retreat.
   void respond();
+  void proceed_with_caution(const safety_configuration& safety, bool is_demanded);
   void control();
   /// Acts: sends every command of the step, and notes it where its effect is expected.
   void command();
@@ -96,6 +101,7 @@ class Gnc : private GncState {
   void check_inbox();
   void check_navigation();
   void check_drift(const safety_configuration& safety);
+  [[nodiscard]] bool is_drift_known(const safety_configuration& safety);
   void check_retreat();
   void check_hold();
 

@@ -159,6 +159,10 @@ void Gnc::restart(GpsTime now) {
   renew(images_);
   attitude_.reset();
   unsafe_since_.reset();
+  assessed_since_.reset();
+  cautious_since_.reset();
+  has_settled_ = false;
+  is_cautious_ = false;
   has_navigated_ = false;
   promised_period_ = Duration{};
   stepped_ = false;

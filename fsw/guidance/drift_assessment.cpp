@@ -40,6 +40,9 @@ Assessment assess_drift_now(const DriftSituation& situation, double unmeasured_s
   if (!probability.ok()) return assessment;
   retreat.prepare(situation.orbits.epoch, at_once.value().burn);
   assessment.is_known = true;
+  const double revolution_s = 2.0 * math::kPi / orbit::mean_motion(servicer.a);
+  assessment.position_bound_m = math::hypot(
+      situation.bound.radial_normal, situation.bound.along_track + situation.bound.along_track_rate * revolution_s);
   assessment.passive_distance = passive.value().spatial.distance;
   assessment.retreat_distance = delayed.value().burn.distance;
   assessment.collision_probability = probability.value().spatial;

@@ -17,6 +17,7 @@ struct Assessment {
   bool is_known = false;
   double passive_distance = 0.0;       ///< m, minimum over the horizon without another burn, less three sigma
   double retreat_distance = 0.0;       ///< m, minimum with a retreat at the end of the delay, errors included
+  double position_bound_m = 0.0;       ///< 3 sigma of the position a revolution later
   double collision_probability = 0.0;  ///< maximum over the horizon if the retreat is flown now
   double collision_probability_in_plane = 0.0;
 };

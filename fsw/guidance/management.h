@@ -37,8 +37,15 @@ class Management {
   /// to `now`.
   void update(GpsTime now, const messaging::Telecommands& telecommands);
 
-  /// Returns the mode. Station keeping before the first waypoint is idle: there is no position to keep yet.
-  [[nodiscard]] Mode mode() const { return mode_ == Mode::kStationKeeping && next_ == 0 ? Mode::kIdle : mode_; }
+  /// Returns the mode. Station keeping before the first waypoint is idle: there is no position to keep yet. A mode that
+  /// burns is hold while it is suspended.
+  [[nodiscard]] Mode mode() const {
+    if (mode_ == Mode::kStationKeeping && next_ == 0) return Mode::kIdle;
+    const bool burns = mode_ == Mode::kApproach || mode_ == Mode::kStationKeeping;
+    return burns && is_suspended_ ? Mode::kHold : mode_;
+  }
+  /// Suspends the approach, or resumes it.
+  void suspend(bool is_suspended) { is_suspended_ = is_suspended; }
   /// Starts the retreat that a fault demands, until the next mode command. Has no effect while idle.
   void retreat() {
     if (mode() != Mode::kIdle) mode_ = Mode::kRetreat;
@@ -58,6 +65,7 @@ class Management {
   void pass_waypoints(GpsTime now);
 
   Mode mode_ = Mode::kIdle;
+  bool is_suspended_ = false;
   gnc_configuration configuration_;
   safety_configuration safety_{};
   bool has_safety_ = false;

@@ -14,6 +14,11 @@ using messaging::is_positive;
 
 constexpr double kLargestARoe = 1e6;  // m; beyond it the relative-orbit models are not valid
 
+// A limit of the process noise above that of two like spacecraft states larger differential accelerations: drag, a
+// state of its own, begins with the acceleration that the limit stands for over a revolution.
+constexpr double kLikeSpacecraftPsd = 1e-11;  // m^2/s^3
+constexpr double kRevolution_s = 6000.0;
+
 /// Bits of all sources of the list.
 template <class... Source>
 constexpr std::int32_t bits_of(const std::tuple<Source...>* /*list*/) {
@@ -72,6 +77,9 @@ filter::FilterSettings filter_settings(const messaging::Telecommands& telecomman
                                             navigation->acceleration_psd_most};
     settings.relative_orbit.empirical = {.sigma = navigation->acceleration_sigma,
                                          .time_s = navigation->acceleration_time_s};
+    if (navigation->acceleration_psd_most > kLikeSpacecraftPsd) {
+      settings.relative_orbit.along_track.sigma = math::sqrt(navigation->acceleration_psd_most / kRevolution_s);
+    }
   }
   return settings;
 }

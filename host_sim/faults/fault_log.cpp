@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "fsw/orbit/rtn.h"
 #include "fsw/packets/messages.h"
 #include "host_sim/faults/fault_injection.h"
 #include "host_sim/faults/fault_schedule.h"
@@ -65,6 +66,7 @@ void FaultLog::on_truth(const twins::TruthSnapshot& truth) {
   const twins::SpacecraftTruth* const servicer = truth.find(servicer_);
   const twins::SpacecraftTruth* const target = truth.find(target_);
   if (servicer != nullptr) truth_ = *servicer;
+  if (target != nullptr) target_truth_ = *target;
   truth_time_ = truth.time;
   const auto has_begun = [&](const State& state) { return state.fault.has_begun(truth.time); };
   if (servicer == nullptr || target == nullptr || std::ranges::none_of(states_, has_begun)) return;
@@ -121,6 +123,8 @@ void FaultLog::look_at_outputs(GpsTime time, std::span<const pil::Packet> output
       commanded_dv_[command.value().maneuver_id] = norm(command.value().dv_rtn);
     } else if (const auto telemetry = fsw::packets::decode<telemetry_gnss>(packet.value()); telemetry.ok()) {
       carrier_phase_ = telemetry.value();
+    } else if (const auto estimate = fsw::packets::decode<telemetry_navigation>(packet.value()); estimate.ok()) {
+      look_at_estimate(time, estimate.value());
     }
   }
 }
@@ -308,10 +312,40 @@ void FaultLog::finish() {
   }
 }
 
+/// The truth of the step, which precedes its packets, against the estimate: position, root of the sum of squares.
+void FaultLog::look_at_estimate(GpsTime time, const telemetry_navigation& estimate) {
+  constexpr double kSigmas = 3.0;
+  if (states_.empty() || !truth_ || !target_truth_ || truth_time_ != time) return;
+  const auto relative = fsw::orbit::relative_state_rtn(truth_->orbit, target_truth_->orbit);
+  double error = 0.0, variance = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double miss = estimate.relative_position_rtn[axis] - relative.position_rtn(axis);
+    error += miss * miss;
+    variance += estimate.sigma_rtn[axis] * estimate.sigma_rtn[axis];
+  }
+  consistency_.push_back({time, estimate.valid != 0 && error <= kSigmas * kSigmas * variance});
+}
+
+/// The first step from `from` on at which the estimate is within three sigmas of the truth, as in the steps after it:
+/// an estimate that is wrong passes the truth at times. Empty if there is none; `from` without estimates.
+std::optional<GpsTime> FaultLog::first_consistent(GpsTime from) const {
+  constexpr std::ptrdiff_t kSteps = 10;
+  if (consistency_.empty()) return from;
+  auto step = std::ranges::lower_bound(consistency_, from, {}, &Consistency::time);
+  for (; step != consistency_.end(); ++step) {
+    const auto last = step + std::min(kSteps, consistency_.end() - step);
+    if (std::all_of(step, last, [](const Consistency& one) { return one.is_consistent; })) return step->time;
+  }
+  return std::nullopt;
+}
+
+/// All sources that aided before the fault aid again, and the estimate is consistent.
 std::optional<GpsTime> FaultLog::recovery_of(const State& state) const {
   if (!state.over) return std::nullopt;
   const std::int32_t needed = aids_concerned(mission_, state.fault) & aids_.before(state.fault.begin);
-  return aids_.first_with(needed, *state.over);
+  const std::optional<GpsTime> aided = aids_.first_with(needed, *state.over);
+  const auto consistent = aided ? first_consistent(*aided) : std::nullopt;
+  return consistent ? std::max(aided, consistent) : std::nullopt;
 }
 
 report::FaultRow FaultLog::row_of(const State& state) const {

@@ -58,6 +58,8 @@ class FaultLog final : public app::RunObserver {
   void look_at_receiver(State& state, fsw::GpsTime time);
   void look_for_slip(State& state, const ReceiverEpoch& epoch, fsw::GpsTime time);
   void look_for_reaction(State& state, fsw::GpsTime time);
+  void look_at_estimate(fsw::GpsTime time, const telemetry_navigation& estimate);
+  [[nodiscard]] std::optional<fsw::GpsTime> first_consistent(fsw::GpsTime from) const;
   [[nodiscard]] std::optional<fsw::GpsTime> recovery_of(const State& state) const;
   [[nodiscard]] report::FaultRow row_of(const State& state) const;
 
@@ -73,7 +75,14 @@ class FaultLog final : public app::RunObserver {
   std::map<fsw::packets::Apid, ReceiverObserver> receivers_;
   std::map<fsw::packets::Apid, std::vector<ReceiverEpoch>> epochs_;  ///< epochs of the present step
   std::optional<telemetry_gnss> carrier_phase_;                      ///< the last one
+  /// Whether the estimate of a step is valid and within its sigmas of the truth.
+  struct Consistency {
+    fsw::GpsTime time;
+    bool is_consistent = false;
+  };
   AidWatch aids_;
+  std::vector<Consistency> consistency_;
+  std::optional<twins::SpacecraftTruth> target_truth_;
   bool looks_at_receivers_ = false;  ///< decoding costs, and most faults are not theirs
   std::optional<twins::SpacecraftTruth> truth_;
   fsw::GpsTime truth_time_;

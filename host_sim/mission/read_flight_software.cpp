@@ -1,6 +1,9 @@
 #include <algorithm>
+#include <memory>
+#include <string>
 
 #include "host_sim/mission/mission.h"
+#include "host_sim/mission/process_noise_keys.h"
 #include "host_sim/mission/read_sections.h"
 
 namespace vbar::mission {
@@ -151,6 +154,10 @@ bool uses(const Mission& mission, std::int32_t use) {
   });
 }
 
+// Process noise of two like spacecraft at 700 km.
+constexpr double kPsdStart = 1e-14, kPsdMin = 1e-15, kPsdMax = 1e-11;
+constexpr double kAccelerationSigma_nmps2 = 1.0, kAccelerationTime_s = 1500.0, kAngularPsd = 1e-11;
+
 /// Bearings alone do not find an orbit; keypoints do.
 void read_apriori(const TableReader& navigation, Mission& mission) {
   const bool has_bearings = uses(mission, vbar::navigation_configuration::kUseBearings);
@@ -168,21 +175,58 @@ void read_apriori(const TableReader& navigation, Mission& mission) {
   section.finish();
 }
 
+std::optional<SurfaceBounds> read_bounds(const TableReader& section, const char* key) {
+  if (!section.has(key)) return std::nullopt;
+  const std::vector<double> bounds = section.numbers(key, 2, 2, from_to(0.0, 100.0));
+  if (bounds[0] > bounds[1]) section.refuse_value(key, "two numbers, the smaller one first");
+  return SurfaceBounds{bounds[0], bounds[1]};
+}
+
+/// A key that none of the sources of navigation uses, although it differs from its default.
+void note_without_effect(const TableReader& section, const Mission& mission, ProcessNoiseKeys& keys) {
+  using Use = vbar::navigation_configuration;
+  const Navigation& navigation = mission.navigation;
+  const bool has_carrier = uses(mission, Use::kUseCarrierPair);
+  const bool has_keypoints = uses(mission, Use::kUseKeypoints);
+  const bool has_camera = has_keypoints || uses(mission, Use::kUseBearings);
+  const vbar::navigation_configuration& c = navigation.configuration;
+  const auto note = [&](const char* key, bool is_default, bool is_used, const char* of) {
+    if (!section.has(key) || is_default || is_used) return;
+    keys.without_effect.push_back(std::string("navigation.") + key +
+                                  " has no effect in this mission: it is used with " + of);
+  };
+  note("acceleration_psd", c.acceleration_psd == kPsdStart, has_camera, "cameras");
+  note("acceleration_psd_min", c.acceleration_psd_least == kPsdMin, has_camera, "cameras");
+  note("acceleration_psd_max", c.acceleration_psd_most == kPsdMax, has_camera, "cameras");
+  constexpr const char* kInstead = "carrier phase (with cameras: acceleration_psd, acceleration_psd_max)";
+  note("acceleration_sigma_nmps2", c.acceleration_sigma == 1e-9 * kAccelerationSigma_nmps2, has_carrier, kInstead);
+  note("acceleration_correlation_time_s", c.acceleration_time_s == kAccelerationTime_s, has_carrier, kInstead);
+  note("angular_acceleration_psd", navigation.angular_acceleration_psd == kAngularPsd, has_keypoints, "keypoints");
+}
+
 }  // namespace
 
 void read_navigation(const TableReader& document, Mission& mission) {
   const TableReader section = document.table("navigation");
   vbar::navigation_configuration& navigation = mission.navigation.configuration;
   constexpr Range kPsd = above_to(0.0, 1e-3);
-  navigation.acceleration_psd = section.number("acceleration_psd", kPsd, 1e-14);
-  navigation.acceleration_psd_least = section.number("acceleration_psd_min", kPsd, 1e-15);
-  navigation.acceleration_psd_most = section.number("acceleration_psd_max", kPsd, 1e-11);
-  navigation.acceleration_sigma = 1e-9 * section.number("acceleration_sigma_nmps2", above_to(0.0, 1e6), 1.0);
-  navigation.acceleration_time_s = section.number("acceleration_correlation_time_s", above_to(0.0, 1e6), 1500.0);
+  navigation.acceleration_psd = section.number("acceleration_psd", kPsd, kPsdStart);
+  navigation.acceleration_psd_least = section.number("acceleration_psd_min", kPsd, kPsdMin);
+  navigation.acceleration_psd_most = section.number("acceleration_psd_max", kPsd, kPsdMax);
+  navigation.acceleration_sigma =
+      1e-9 * section.number("acceleration_sigma_nmps2", above_to(0.0, 1e6), kAccelerationSigma_nmps2);
+  navigation.acceleration_time_s =
+      section.number("acceleration_correlation_time_s", above_to(0.0, 1e6), kAccelerationTime_s);
   vbar::thruster_configuration& thruster = mission.navigation.thruster;
   thruster.sigma_mps = 1e-3 * section.number("maneuver_sigma_mmps", above_to(0.0, 1e3), 0.002);
   thruster.sigma_relative = 1e-2 * section.number("maneuver_sigma_percent", from_to(0.0, 100.0), 0.2);
-  mission.navigation.angular_acceleration_psd = section.number("angular_acceleration_psd", kPsd, 1e-11);
+  mission.navigation.angular_acceleration_psd = section.number("angular_acceleration_psd", kPsd, kAngularPsd);
+  const auto keys = std::make_shared<ProcessNoiseKeys>();
+  keys->are_stated = section.has("acceleration_psd") || section.has("acceleration_psd_max");
+  keys->target_drag = read_bounds(section, "target_drag_m2_per_kg");
+  keys->target_radiation = read_bounds(section, "target_radiation_m2_per_kg");
+  note_without_effect(section, mission, *keys);
+  mission.shared.push_back(keys);
   read_apriori(section, mission);
   section.finish();
   if (navigation.acceleration_psd < navigation.acceleration_psd_least ||

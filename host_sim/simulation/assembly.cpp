@@ -15,6 +15,7 @@
 #include "host_sim/faults/fault_injection.h"
 #include "host_sim/faults/fault_log.h"
 #include "host_sim/faults/fault_schedule.h"
+#include "host_sim/installation/expected_accelerations.h"
 #include "host_sim/installation/sensor_kinds.h"
 #include "host_sim/report/summarise.h"
 #include "host_sim/sensors/installed_testbeds.h"
@@ -141,7 +142,9 @@ std::vector<twins::Packet> telecommands_at_start(const mission::Mission& mission
   const auto state_at_start = [&](std::string_view spacecraft) {
     return truth.state(truth.index_of(std::string(spacecraft)));
   };
-  return sensors::telecommands_of({mission, servicer, data_directory, *truth.data().earth_orientation, state_at_start});
+  const mission::Mission covered =
+      sensors::with_expected_accelerations(mission, servicer, truth.data(), state_at_start(servicer.name)).mission;
+  return sensors::telecommands_of({covered, servicer, data_directory, *truth.data().earth_orientation, state_at_start});
 }
 
 Timetable timetable_of(const mission::Mission& mission, const mission::Spacecraft& servicer,
@@ -373,6 +376,11 @@ twins::TruthOutlook& AssembledMission::outlook() {
 std::vector<std::string> AssembledMission::data_notes() const {
   std::vector<std::string> notes = model_.model().data().notes;
   notes.insert(notes.end(), made_.data_notes.begin(), made_.data_notes.end());
+  const std::vector<std::string> of_navigation =
+      sensors::with_expected_accelerations(mission_, servicer_, model_.model().data(),
+                                           model_.model().state(servicer_.name))
+          .notes;
+  notes.insert(notes.end(), of_navigation.begin(), of_navigation.end());
   return notes;
 }
 

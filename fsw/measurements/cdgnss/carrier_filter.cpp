@@ -27,6 +27,23 @@ constexpr std::size_t kMinForMedian = 5;
 // in a few epochs. Phases of a wider orbit would update it along a wrong tangent, with the weight of a millimetre.
 constexpr double kMaxNonlinearity_m = 0.3e-3;
 
+// The orbit is contradicted where a displacement of the target explains an epoch by this ratio of likelihoods: 6 sigma
+// of three degrees of freedom, for codes 7, whose multipath is correlated. What it leaves has at most this mean square.
+constexpr double kPhaseGate = 40.0;
+constexpr double kCodeGate = 56.0;
+constexpr double kMaxRest = 4.0;
+// Displacements below this are those of attitudes, antennas and wander.
+constexpr double kMinDisplacement_m = 5e-3;
+// An orbit is verified by this number of channels that were tracked for this number of epochs: their ambiguities are
+// then those of another orbit than the present one.
+constexpr int kProvenEpochs = 6;
+constexpr int kMinProven = 5;
+// The burn that would have displaced the target in the time since, times this: it may have been flown late.
+constexpr double kBurnMargin = 2.0;
+// A larger one, m/s, is none: the measurements or the whole orbit are then wrong, which the codes decide.
+constexpr double kLargestBurn = 1.0;
+constexpr Duration kLongestUnverified = duration_of_seconds(6000);
+
 // Lengths of the baseline: below, differential delays are some hundredths of a millimetre.
 constexpr double kIonosphereFrom_m = 40.0;
 constexpr double kIonosphereUntil_m = 30.0;
@@ -85,6 +102,8 @@ void CarrierFilter::deactivate_blocks(filter::RelativeNavigationFilter& filter) 
   filter::deactivate_block<TargetAntenna>(estimate);
   filter::deactivate_block<ServicerAntenna>(estimate);
   filter::deactivate_block<filter::EmpiricalAcceleration>(estimate);
+  last_epoch_.reset();
+  verified_.reset();
 }
 
 void CarrierFilter::deactivate_epoch_states(filter::RelativeNavigationFilter& filter) {
@@ -103,20 +122,116 @@ CarrierUpdate CarrierFilter::process_epoch(const DifferentialEpoch& epoch, const
   CarrierUpdate update;
   if (!filter.has_relative() || epoch.count == 0) return update;
   filter::Estimate& estimate = filter.estimate();
-  channels_.give_back_unseen(epoch.time, [&estimate](std::size_t place) { deactivate(place, estimate); });
+  channels_.give_back_unseen(last_epoch_.value_or(epoch.time),
+                             [&estimate](std::size_t place) { deactivate(place, estimate); });
   renew_epoch_states(servicer, target, estimate);
   edits_.fill(Edit{});
   if (rows_.form(epoch, servicer, target, filter) != Status::kOk) return update;
   follow_ionosphere(filter);
+  const bool uses_phases = rows_.nonlinearity_m() < kMaxNonlinearity_m || channels_.is_any_tracked();
+  if (uses_phases) follow_channels(epoch, estimate, update);
+  // Before the codes: against a wrong orbit they would determine a wrong clock.
+  test_orbit(Observable::kPhase, epoch, servicer, target, filter, update);
+  test_orbit(Observable::kCode, epoch, servicer, target, filter, update);
   find_outlying_codes(epoch, estimate);
   use_codes(epoch, estimate, update);
-  if (rows_.nonlinearity_m() < kMaxNonlinearity_m || channels_.is_any_tracked()) {
-    follow_channels(epoch, estimate, update);
+  if (uses_phases) {
     find_slips_by_median(epoch, estimate, update);
     use_phases(epoch, filter, update);
   }
   filter.finish_update();
+  last_epoch_ = epoch.time;
   return update;
+}
+
+/// Innovations of the codes, or of the phases of known ambiguities, against a displacement of the target.
+Displacement CarrierFilter::displacement_by(Observable observable, const DifferentialEpoch& epoch,
+                                            const filter::Estimate& estimate) {
+  test_.clear();
+  std::array<std::size_t, DisplacementTest::kMaxRows> tested{};
+  const auto sensitivity = [&](std::size_t n) {
+    const gnss::Signal signal = epoch.observations[n].signal;
+    return observable == Observable::kCode ? rows_.code_sensitivity(n, signal)
+                                           : rows_.phase_sensitivity(n, *edits_[n].channel, signal);
+  };
+  for (std::size_t n = 0; n < epoch.count && !test_.is_full(); ++n) {
+    const DifferentialObservation& observation = epoch.observations[n];
+    const std::optional<std::size_t>& place = edits_[n].channel;
+    if (observable == Observable::kPhase && (!place || channels_[*place].epochs == 0)) continue;
+    const bool is_code = observable == Observable::kCode;
+    const double innovation = is_code ? rows_.code_residual(n, observation, estimate)
+                                      : rows_.phase_residual(n, *place, observation, estimate);
+    const double sigma = is_code ? observation.code_sigma_m : observation.phase_sigma_m;
+    const int row = test_.count();
+    tested[static_cast<std::size_t>(row)] = n;
+    test_.add(innovation, rows_.direction(n));
+    const filter::Estimate::Vector ph = estimate.covariance_times(sensitivity(n));
+    for (int other = 0; other < row; ++other) {
+      test_.set_covariance(row, other, sensitivity(tested[static_cast<std::size_t>(other)]).dot(ph));
+    }
+    test_.set_covariance(row, row, sensitivity(n).dot(ph) + square(sigma) + rows_.extra_variance(n));
+  }
+  return test_.evaluate(observable == Observable::kCode ? kCodeGate : kPhaseGate, kMaxRest);
+}
+
+/// Number of signals of the epoch whose ambiguities have been known for long.
+int CarrierFilter::proven_in(const DifferentialEpoch& epoch) const {
+  int proven = 0;
+  for (std::size_t n = 0; n < epoch.count; ++n) {
+    const DifferentialObservation& observation = epoch.observations[n];
+    const std::optional<std::size_t> place = channels_.find(observation.satellite, observation.signal);
+    const bool is_proven = observation.phase_usable && place && channels_[*place].epochs >= kProvenEpochs;
+    if (is_proven && !channels_.lost_lock(*place, observation, epoch.time)) ++proven;
+  }
+  return proven;
+}
+
+/// Decides, before an epoch updates the estimate, whether the estimate is wrong: then it is opened by what can have
+/// made it so, and the same epoch corrects it. Otherwise each measurement is judged by itself.
+void CarrierFilter::test_orbit(Observable observable, const DifferentialEpoch& epoch, const AntennaPlatform& servicer,
+                               const AntennaPlatform& target, filter::RelativeNavigationFilter& filter,
+                               CarrierUpdate& update) {
+  // Phases of known ambiguities are a thousand times as accurate.
+  const bool has_proven = proven_in(epoch) >= kMinProven;
+  if (observable == Observable::kCode && has_proven) return;
+  const Displacement displacement = displacement_by(observable, epoch, filter.estimate());
+  if (!displacement.is_tested) return;
+  const double size_m = math::sqrt(displacement.metres.squaredNorm());
+  if (!displacement.is_detected || size_m < kMinDisplacement_m) {
+    const bool agrees = observable == Observable::kPhase && displacement.ratio <= kPhaseGate;
+    if (agrees && has_proven) verified_ = epoch.time;
+    return;
+  }
+  if (!open_orbit(displacement, observable, epoch.time, filter)) return;
+  update.displacement_ratio = displacement.ratio;
+  // The model of the observations about the same mean, with the new covariance.
+  if (rows_.form(epoch, servicer, target, filter) != Status::kOk) return;
+}
+
+/// The estimate was right when it was verified last: a burn since then has displaced the target. Ambiguities that were
+/// determined since by the displaced orbit are wrong as well; those of before hold, and correct the orbit at once.
+bool CarrierFilter::open_orbit(const Displacement& displacement, Observable observable, GpsTime now,
+                               filter::RelativeNavigationFilter& filter) {
+  GpsTime since = verified_ && now - *verified_ < kLongestUnverified ? *verified_ : now - kLongestUnverified;
+  if (!verified_ && last_epoch_) since = *last_epoch_;
+  // Time in which the displacement has grown: since the last epoch, or since the ambiguities that contradict it.
+  GpsTime grown_since = last_epoch_.value_or(since);
+  for (std::size_t place = 0; place < kPhaseChannels && observable == Observable::kPhase; ++place) {
+    if (is_of_displaced_orbit(place, since) && channels_[place].first_seen < grown_since) {
+      grown_since = channels_[place].first_seen;
+    }
+  }
+  constexpr double kShortest_s = 1.0;
+  const double elapsed_s = seconds(now - grown_since);
+  const double burn =
+      math::sqrt(displacement.metres.squaredNorm()) / (elapsed_s > kShortest_s ? elapsed_s : kShortest_s);
+  if (burn > kLargestBurn) return false;
+  for (std::size_t place = 0; place < kPhaseChannels; ++place) {
+    if (is_of_displaced_orbit(place, since)) lose(place, filter.estimate());
+  }
+  filter.inflate_by_burn(since, kBurnMargin * burn);
+  verified_ = now;
+  return true;
 }
 
 /// The delays of two receivers differ by the curvature of the ionosphere over their baseline: by millimetres at low

@@ -14,6 +14,7 @@
 
 #include "fsw/filter/relative_navigation_filter.h"
 #include "fsw/gnss/differential.h"
+#include "fsw/measurements/cdgnss/displacement_test.h"
 #include "fsw/measurements/cdgnss/single_differences.h"
 
 namespace vbar::fsw::measurements {
@@ -35,7 +36,9 @@ struct CarrierUpdate {
   std::int32_t phases_rejected = 0;
   std::int32_t slips = 0;
   std::int32_t contradictions = 0;  ///< held channels released although their receivers reported no loss of lock
-  double code_nis = 0.0;            ///< sums over the observations used; each is expected to be near their number
+  double displacement_ratio =
+      0.0;                ///< of the displacement to which the estimate was opened; 0: it was not contradicted
+  double code_nis = 0.0;  ///< sums over the observations used; each is expected to be near their number
   double phase_nis = 0.0;
 };
 
@@ -81,6 +84,8 @@ class CarrierFilter {
   }
 
  private:
+  enum class Observable : unsigned char { kCode, kPhase };
+
   struct Edit {
     bool has_outlying_code = false;
     std::optional<std::size_t> channel;
@@ -89,6 +94,18 @@ class CarrierFilter {
   void renew_epoch_states(const AntennaPlatform& servicer, const AntennaPlatform& target, filter::Estimate& estimate);
   void follow_ionosphere(filter::RelativeNavigationFilter& filter) const;
   void find_outlying_codes(const gnss::DifferentialEpoch& epoch, const filter::Estimate& estimate);
+  void test_orbit(Observable observable, const gnss::DifferentialEpoch& epoch, const AntennaPlatform& servicer,
+                  const AntennaPlatform& target, filter::RelativeNavigationFilter& filter, CarrierUpdate& update);
+  [[nodiscard]] Displacement displacement_by(Observable observable, const gnss::DifferentialEpoch& epoch,
+                                             const filter::Estimate& estimate);
+  /// Whether the ambiguity of a channel was determined after `since`.
+  [[nodiscard]] bool is_of_displaced_orbit(std::size_t place, GpsTime since) const {
+    const PhaseChannel& channel = channels_[place];
+    return channel.in_use && channel.epochs > 0 && channel.first_seen > since;
+  }
+  [[nodiscard]] int proven_in(const gnss::DifferentialEpoch& epoch) const;
+  bool open_orbit(const Displacement& displacement, Observable observable, GpsTime now,
+                  filter::RelativeNavigationFilter& filter);
   void use_codes(const gnss::DifferentialEpoch& epoch, filter::Estimate& estimate, CarrierUpdate& update);
   void follow_channels(const gnss::DifferentialEpoch& epoch, filter::Estimate& estimate, CarrierUpdate& update);
   void find_slips_by_median(const gnss::DifferentialEpoch& epoch, filter::Estimate& estimate, CarrierUpdate& update);
@@ -101,6 +118,9 @@ class CarrierFilter {
   CarrierFilterSettings settings_;
   double antenna_sigma_m_ = CarrierFilterSettings{}.antenna_offset_sigma_m;
   PhaseChannels channels_;
+  DisplacementTest test_;
+  std::optional<GpsTime> last_epoch_;  ///< processed before the present one
+  std::optional<GpsTime> verified_;    ///< the phases of enough proven channels have agreed with the orbit last
   DifferenceRows rows_;
   std::array<Edit, gnss::kMaxObservations> edits_{};
 };

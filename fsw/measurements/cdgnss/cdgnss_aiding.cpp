@@ -83,6 +83,7 @@ void CdgnssAiding::judge(GpsTime time, filter::RelativeNavigationFilter& filter)
   }
   if (last_update_.codes_used > 0) filter.confirm_relative(kSource);
   aid_.go_to(AidState::kAiding, time);
+  if (last_update_.displacement_ratio > 0.0) aid_.note_inconsistency(math::sqrt(last_update_.displacement_ratio));
   judge_integers(filter);
   judge_antennas(filter);
 }

@@ -90,7 +90,8 @@ class CdgnssAiding {
   [[nodiscard]] const Aid& aid() const { return aid_; }
 
   static constexpr Duration kSilence = duration_of_seconds(30);
-  static constexpr Duration kKept = PhaseChannels::kKeptUnseen;
+  /// Ambiguities are kept through outages: the lock times of both receivers at the end of one tell which still hold.
+  static constexpr Duration kKept = duration_of_seconds(3600);
   /// An empirical acceleration that has decayed to its stationary distribution is deactivated.
   static constexpr Duration kEmpiricalKept = duration_of_seconds(7200);
   static constexpr Duration kFailedPause = duration_of_seconds(600);

@@ -52,6 +52,7 @@ bool PhaseChannels::lost_lock(std::size_t place, const gnss::DifferentialObserva
 
 void PhaseChannels::see(std::size_t place, const gnss::DifferentialObservation& observation, GpsTime now) {
   PhaseChannel& channel = channels_[place];
+  if (channel.epochs == 0) channel.first_seen = now;
   channel.last_seen = now;
   channel.servicer_lock_s = observation.servicer_lock_s;
   channel.target_lock_s = observation.target_lock_s;

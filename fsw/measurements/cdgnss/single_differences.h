@@ -31,6 +31,7 @@ struct PhaseChannel {
   bool in_use = false;
   gnss::SatelliteId satellite;
   gnss::Signal signal = gnss::Signal::kGpsL1;
+  GpsTime first_seen;  ///< of the present track: its ambiguity was determined from then on
   GpsTime last_seen;
   double servicer_lock_s = 0.0;
   double target_lock_s = 0.0;
@@ -40,12 +41,13 @@ struct PhaseChannel {
 
 class PhaseChannels {
  public:
-  /// Indices of the channels whose signal has not been seen for kKeptUnseen: released, to be deactivated by the
-  /// caller. Calls `given_back(place)` for each.
+  /// Indices of the channels whose signal has not been seen for kKeptUnseen in epochs until `last`: released, to be
+  /// deactivated by the caller. Calls `given_back(place)` for each. An outage of all signals, as of the crosslink, ends
+  /// no ambiguity: the lock times of its end decide.
   template <class Visitor>
-  void give_back_unseen(GpsTime now, Visitor&& given_back) {
+  void give_back_unseen(GpsTime last, Visitor&& given_back) {
     for (std::size_t k = 0; k < channels_.size(); ++k) {
-      if (channels_[k].in_use && now - channels_[k].last_seen > kKeptUnseen) {
+      if (channels_[k].in_use && last - channels_[k].last_seen > kKeptUnseen) {
         channels_[k] = PhaseChannel{};
         given_back(k);
       }
@@ -121,6 +123,8 @@ class DifferenceRows {
 
   [[nodiscard]] Sensitivity code_sensitivity(std::size_t n, gnss::Signal signal) const;
   [[nodiscard]] Sensitivity phase_sensitivity(std::size_t n, std::size_t channel, gnss::Signal signal) const;
+  /// Change of a range by a displacement of the target, in ECI: the unit vector along the line of sight.
+  [[nodiscard]] const Vector3& direction(std::size_t n) const { return rows_[n].jitter; }
   /// Variance due to the nonlinearity, m^2.
   [[nodiscard]] double extra_variance(std::size_t n) const { return rows_[n].extra_variance; }
   /// Distance between the phase centres, m.

@@ -1,7 +1,5 @@
 #include "fsw/measurements/keypoints/keypoint_aiding.h"
 
-#include <array>
-
 #include "fsw/math/cholesky.h"
 #include "fsw/math/math.h"
 
@@ -26,18 +24,23 @@ constexpr int kProvenImages = 20;
 constexpr Duration kUpset = duration_of_seconds(120);
 // The pose of an image contradicts the attitude by more than this: other faces are taken for those seen.
 constexpr double kOtherAttitude = 0.52;  // rad
-// This number of consecutive contradicting positions inflates the covariance, the second time more than the first; the
-// third time the orbit is initialised from poses.
-constexpr int kFarBeforeInflation = 5;
-constexpr std::array<double, 3> kInflatedVelocity = {0.1, 1.0, 1.0};  // m/s
-constexpr std::array<double, 3> kInflatedDistance = {0.1, 0.3, 0.5};  // relative
+// This number of consecutive contradicting positions decides whether the orbit is opened; the third time in a row it is
+// initialised from poses.
+constexpr int kFarBeforeDecision = 5;
+constexpr int kMaxOpenings = 3;
+// Poses contradict each other because the crop is in the wrong place, if at all for this long: the errors of the
+// network change with the tumble of the target.
+constexpr Duration kUndecided = duration_of_seconds(1800);
+// The burn that would have caused the miss in the time since the last image that agreed, times this: it may have been
+// flown late.
+constexpr double kBurnMargin = 2.0;
+constexpr double kShortestSince_s = 10.0;
+constexpr double kLongestSince_s = 6000.0;
 // A wrong attitude has biased the position as well: keypoints of another side appear larger or smaller.
 constexpr double kWrongAttitudeDistance = 0.03;  // relative
-// After this number of consecutive images without the illuminated target its position is uncertain: the crop is then
-// searched in the whole image.
-constexpr int kMissingBeforeInflation = 12;
-constexpr double kMissingVelocity = 0.005;  // m/s
-constexpr double kMissingDistance = 0.1;    // relative
+// After this number of consecutive images without the illuminated target it is searched in the whole image.
+constexpr int kMissingBeforeSearch = 12;
+constexpr double kMissingDistance = 0.1;  // relative: a range less certain than this is searched anyway
 
 // Without a usable image for this long the source no longer aids.
 constexpr Duration kSilence = duration_of_seconds(60);
@@ -118,8 +121,7 @@ KeypointEditStatus KeypointAiding::edit(const KeypointImage& image, filter::Rela
   missing_in_a_row_ = 0;
   if (filter.solution_status() != SolutionStatus::kEstimated) return begin_orbit(filter);
   // Against a contradicted or uncertain orbit, keypoints would correct the attitude in place of the position.
-  const bool is_orbit_certain =
-      inflations_in_a_row_ == 0 && range_uncertainty(filter) <= settings_.keypoint_range_share;
+  const bool is_orbit_certain = openings_in_a_row_ == 0 && range_uncertainty(filter) <= settings_.keypoint_range_share;
   if (!is_orbit_certain) return take_position(image, camera, filter);
   if (!filter.has_attitude() && !initialize_attitude(filter)) return take_position(image, camera, filter);
   return take_keypoints(image, camera, filter);
@@ -177,9 +179,7 @@ KeypointEditStatus KeypointAiding::begin_orbit(filter::RelativeNavigationFilter&
   if (!start_.attitude().ok() || !orbit.ok()) return KeypointEditStatus::kStart;
   if (filter.solution_status() == SolutionStatus::kInconsistent) ++counters_.restarts;
   filter.initialize_relative(orbit.value().roe, orbit.value().covariance, SolutionStatus::kEstimated);
-  reset_rejections();
-  inflations_in_a_row_ = 0;
-  last_accepted_ = filter.epoch();
+  accept(filter.epoch());
   return KeypointEditStatus::kStart;
 }
 
@@ -212,15 +212,16 @@ Matrix3 KeypointAiding::position_covariance(const measurements::PoseSample& samp
   return range_sigma * range_sigma.transpose() + lateral_sigma * lateral_sigma * Matrix3::Identity();
 }
 
-bool KeypointAiding::is_far(const measurements::PoseSample& sample,
-                            const filter::RelativeNavigationFilter& filter) const {
+/// Distance of a pose from the estimate, m; empty within the gate.
+std::optional<double> KeypointAiding::distance_if_far(const measurements::PoseSample& sample,
+                                                      const filter::RelativeNavigationFilter& filter) const {
   const auto target = filter.target();
-  if (!target.ok()) return true;
+  if (!target.ok()) return 0.0;
   const math::Cholesky<3> factor(filter.position_covariance_eci() + sample.covariance_eci +
                                  position_covariance(sample, false));
-  if (!factor.ok()) return true;
   const Vector3 miss = sample.relative_eci - (target.value().position_eci - filter.servicer().position_eci);
-  return !(factor.solve_lower(miss).squaredNorm() <= settings_.position_gate);
+  if (factor.ok() && factor.solve_lower(miss).squaredNorm() <= settings_.position_gate) return std::nullopt;
+  return math::sqrt(miss.squaredNorm());
 }
 
 KeypointEditStatus KeypointAiding::take_position(const KeypointImage& image, const CameraPose& camera,
@@ -228,22 +229,22 @@ KeypointEditStatus KeypointAiding::take_position(const KeypointImage& image, con
   // In penumbra all poses have the same error.
   if (!image.pnp || !is_finite(*image.pnp) || !light_.is_sunlit) return KeypointEditStatus::kNone;
   const measurements::PoseSample sample = sample_of(image, camera, filter);
-  if (is_far(sample, filter)) {
-    count_rejection(image.time, true, filter);
+  if (const std::optional<double> miss_m = distance_if_far(sample, filter)) {
+    count_rejection(image.time, miss_m, filter);
     return KeypointEditStatus::kRejected;
   }
-  reset_rejections();
-  inflations_in_a_row_ = 0;
+  const GpsTime before = last_accepted_;
+  accept(image.time);
   const auto agreed = start_.attitude();
   const bool is_agreed = has_sample_ && agreed.ok() && agrees_with_image(agreed.value().attitude);
   const Matrix3 covariance = kAlike * sample.covariance_eci + position_covariance(sample, is_agreed);
   filter::MeasurementBatch& batch = filter.workspace();
   if (position_rows(filter, sample.relative_eci, covariance, batch) != Status::kOk ||
       !filter.update(KeypointEditing::kSource, batch)) {
+    last_accepted_ = before;
     return KeypointEditStatus::kRejected;
   }
   ++counters_.positions_used;
-  last_accepted_ = image.time;
   return KeypointEditStatus::kPosition;
 }
 
@@ -281,15 +282,14 @@ KeypointEditStatus KeypointAiding::take_keypoints(const KeypointImage& image, co
     ++images_of_attitude_;
     seen_.add(view, image.time);
     ++counters_.images_used;
-    reset_rejections();
-    inflations_in_a_row_ = 0;
-    last_accepted_ = image.time;
+    accept(image.time);
     return KeypointEditStatus::kFilter;
   }
   // None at all: the estimate expects the target behind the camera.
   if (update.usable == 0 || update.is_mostly_rejected(settings_.editing.max_rejected_share)) {
     const bool has_pose = image.pnp && is_finite(*image.pnp);
-    count_rejection(image.time, has_pose && is_far(sample_of(image, camera, filter), filter), filter);
+    count_rejection(image.time, has_pose ? distance_if_far(sample_of(image, camera, filter), filter) : std::nullopt,
+                    filter);
   }
   return KeypointEditStatus::kRejected;
 }
@@ -304,22 +304,42 @@ void KeypointAiding::judge_network(const KeypointImage& image, const CameraPose&
   verdict_ = NetworkVerdict{.contradicts = is_rejected && angle > kOtherAttitude, .angle = angle};
 }
 
+/// Whether keypoints have confirmed the attitude, and with it the position, for long.
+bool KeypointAiding::is_proven() const {
+  return images_of_attitude_ >= kProvenImages && last_accepted_ - attitude_since_ >= kProven;
+}
+
 /// Whether the network may be in error in place of the attitude.
 bool KeypointAiding::is_upset(GpsTime time) const {
-  const bool is_proven = images_of_attitude_ >= kProvenImages && last_accepted_ - attitude_since_ >= kProven;
-  return is_proven && time - last_accepted_ < kUpset;
+  return is_proven() && time - last_accepted_ < kUpset;
+}
+
+/// Whether the poses of the last images, the present one among them, are those of one motion.
+bool KeypointAiding::poses_agree() const {
+  const auto attitude = start_.attitude();
+  return has_sample_ && attitude.ok() && agrees_with_image(attitude.value().attitude) && start_.orbit().ok();
+}
+
+void KeypointAiding::accept(GpsTime time) {
+  reset_rejections();
+  openings_in_a_row_ = 0;
+  searches_ = false;
+  last_accepted_ = time;
 }
 
 /// Refusals of an ill-lit target count toward no persistence.
-void KeypointAiding::count_rejection(GpsTime time, bool is_position_far, filter::RelativeNavigationFilter& filter) {
+void KeypointAiding::count_rejection(GpsTime time, const std::optional<double>& miss_m,
+                                     filter::RelativeNavigationFilter& filter) {
   ++counters_.images_rejected;
   if (!light_.is_lit) return;
   ++rejected_in_a_row_;
-  far_in_a_row_ = is_position_far ? far_in_a_row_ + 1 : 0;
-  if (far_in_a_row_ >= kFarBeforeInflation) return contradict_orbit(time, filter);
-  if (is_position_far || !filter.has_attitude() || rejected_in_a_row_ < kRejectedBeforeAttitude) return;
+  far_in_a_row_ = miss_m ? far_in_a_row_ + 1 : 0;
+  if (far_in_a_row_ >= kFarBeforeDecision) return contradict_orbit(time, *miss_m, filter);
+  if (miss_m || !filter.has_attitude() || rejected_in_a_row_ < kRejectedBeforeAttitude) return;
   if (is_upset(time)) return aid_.go_to(AidState::kSuspended, time);
-  // The range was known before the contradiction, so that the consensus is judged before the inflation.
+  // An attitude that was wrong from its start has biased the position. The range was known before the contradiction, so
+  // that the consensus is judged before the inflation.
+  const bool has_biased = !is_proven();
   const bool has_renewed = initialize_attitude(filter);
   if (!has_renewed && rejected_in_a_row_ < kRejectedBeforeLoss) return;
   if (!has_renewed) {
@@ -327,34 +347,41 @@ void KeypointAiding::count_rejection(GpsTime time, bool is_position_far, filter:
     aid_.go_to(AidState::kFailed, time);
   }
   reset_rejections();
-  inflate(0.0, kWrongAttitudeDistance, filter);
-}
-
-/// `distance`: relative. An orbit that receivers determine is not changed because images contradict it.
-void KeypointAiding::inflate(double velocity_sigma, double distance, filter::RelativeNavigationFilter& filter) {
-  if (filter.is_precisely_determined()) return;
-  filter.inflate_relative(velocity_sigma, distance * range_m(filter));
+  if (!has_biased || filter.is_precisely_determined()) return;
+  filter.inflate_relative(0.0, kWrongAttitudeDistance * range_m(filter));
   ++counters_.inflations;
 }
 
-/// An illuminated target at its estimated position is detected.
-void KeypointAiding::count_missing(filter::RelativeNavigationFilter& filter) {
+/// An illuminated target at its estimated position is detected. That it is not shows nothing of where it is.
+void KeypointAiding::count_missing(const filter::RelativeNavigationFilter& filter) {
   if (!light_.is_lit || !filter.has_relative() || range_uncertainty(filter) > kMissingDistance) return;
-  if (++missing_in_a_row_ < kMissingBeforeInflation) return;
-  missing_in_a_row_ = 0;
-  inflate(kMissingVelocity, kMissingDistance, filter);
+  if (++missing_in_a_row_ >= kMissingBeforeSearch) searches_ = true;
 }
 
-void KeypointAiding::contradict_orbit(GpsTime time, filter::RelativeNavigationFilter& filter) {
+/// The estimate was right when an image agreed last: a burn since then explains the miss.
+void KeypointAiding::open_orbit(GpsTime time, double miss_m, filter::RelativeNavigationFilter& filter) {
+  const double since_s = seconds(time - last_accepted_);
+  const double within_s = since_s < kLongestSince_s ? since_s : kLongestSince_s;
+  filter.inflate_by_burn(last_accepted_,
+                         kBurnMargin * miss_m / (within_s > kShortestSince_s ? within_s : kShortestSince_s));
+  ++counters_.inflations;
+}
+
+void KeypointAiding::contradict_orbit(GpsTime time, double miss_m, filter::RelativeNavigationFilter& filter) {
   reset_rejections();
   aid_.go_to(AidState::kSuspended, time);
+  searches_ = true;
   if (filter.is_precisely_determined()) {
     filter.deactivate_attitude();  // with which the poses were wrong
     return;
   }
-  inflate(kInflatedVelocity[inflations_in_a_row_], kInflatedDistance[inflations_in_a_row_], filter);
-  if (++inflations_in_a_row_ < kInflatedVelocity.size()) return;
-  inflations_in_a_row_ = 0;
+  if (!poses_agree() && time - last_accepted_ < kUndecided) {
+    ++counters_.undecided;
+    return;
+  }
+  open_orbit(time, miss_m, filter);
+  if (++openings_in_a_row_ < kMaxOpenings) return;
+  openings_in_a_row_ = 0;
   filter.deactivate_attitude();
   filter.mark_inconsistent();
   aid_.go_to(AidState::kFailed, time);

@@ -3,8 +3,12 @@
 //
 // The attitude is initialised by a consensus of single-image poses, and only where the target is lit and the range is
 // known: a pose under a wrong range may be wrong by tens of degrees. Until then such poses contribute their position
-// alone. A lost attitude deactivates the attitude, the rate and the errors of keypoints; the orbit is never discarded,
-// contradicting images inflate its covariance.
+// alone. A lost attitude deactivates the attitude, the rate and the errors of keypoints; the orbit is never discarded.
+//
+// Images that contradict the orbit are evidence against the network, unless their poses agree with each other as the
+// motion of one target: then the covariance of the orbit is opened by the burn that explains them, unreported, since
+// the last image that agreed. Images without agreement, or without a target, are no reason to give an estimate away;
+// the target is then searched in the whole image.
 
 #include <cstdint>
 #include <optional>
@@ -71,7 +75,8 @@ struct KeypointCounters {
   std::int32_t keypoints_rejected = 0;
   std::int32_t positions_used = 0;   ///< of single images, while the attitude was not confirmed
   std::int32_t attitudes_reset = 0;  ///< initialised from single images, from the second time on
-  std::int32_t inflations = 0;       ///< of the covariance of the orbit, after contradictions
+  std::int32_t inflations = 0;       ///< of the covariance of the orbit, after contradictions that agree
+  std::int32_t undecided = 0;        ///< contradictions without agreement, after which the orbit was kept
   std::int32_t restarts = 0;         ///< of the relative orbit, from single images after persistent contradictions
 };
 
@@ -96,6 +101,8 @@ class KeypointAiding {
   [[nodiscard]] Aid& aid() { return aid_; }
   /// Update by the last image; empty if its keypoints were not processed.
   [[nodiscard]] const KeypointsUpdate& last_update() const { return editing_.last_update(); }
+  /// Whether the target is to be searched in the whole image: it was not where the estimate expects it.
+  [[nodiscard]] bool searches() const { return searches_; }
   [[nodiscard]] GpsTime last_accepted() const { return last_accepted_; }
   /// Verdict on the images since forget_verdict(); empty if none was judged.
   [[nodiscard]] const std::optional<NetworkVerdict>& network_verdict() const { return verdict_; }
@@ -125,15 +132,19 @@ class KeypointAiding {
   KeypointEditStatus take_keypoints(const KeypointImage& image, const CameraPose& camera,
                                     filter::RelativeNavigationFilter& filter);
   [[nodiscard]] Matrix3 position_covariance(const measurements::PoseSample& sample, bool is_agreed) const;
-  [[nodiscard]] bool is_far(const measurements::PoseSample& sample,
-                            const filter::RelativeNavigationFilter& filter) const;
+  [[nodiscard]] std::optional<double> distance_if_far(const measurements::PoseSample& sample,
+                                                      const filter::RelativeNavigationFilter& filter) const;
   void judge_network(const KeypointImage& image, const CameraPose& camera, bool is_rejected,
                      const filter::RelativeNavigationFilter& filter);
+  [[nodiscard]] bool is_proven() const;
   [[nodiscard]] bool is_upset(GpsTime time) const;
-  void count_rejection(GpsTime time, bool is_position_far, filter::RelativeNavigationFilter& filter);
-  void count_missing(filter::RelativeNavigationFilter& filter);
-  void inflate(double velocity_sigma, double distance, filter::RelativeNavigationFilter& filter);
-  void contradict_orbit(GpsTime time, filter::RelativeNavigationFilter& filter);
+  [[nodiscard]] bool poses_agree() const;
+  void accept(GpsTime time);
+  /// `miss_m`: distance of the pose of the image from the estimate, if it is beyond the gate.
+  void count_rejection(GpsTime time, const std::optional<double>& miss_m, filter::RelativeNavigationFilter& filter);
+  void count_missing(const filter::RelativeNavigationFilter& filter);
+  void open_orbit(GpsTime time, double miss_m, filter::RelativeNavigationFilter& filter);
+  void contradict_orbit(GpsTime time, double miss_m, filter::RelativeNavigationFilter& filter);
   void reset_rejections();
   void follow_state(GpsTime time, KeypointEditStatus status);
 
@@ -154,7 +165,8 @@ class KeypointAiding {
   int rejected_in_a_row_ = 0;
   int far_in_a_row_ = 0;
   int missing_in_a_row_ = 0;
-  std::size_t inflations_in_a_row_ = 0;
+  bool searches_ = false;
+  int openings_in_a_row_ = 0;
   KeypointCounters counters_;
 };
 

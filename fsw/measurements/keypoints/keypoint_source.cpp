@@ -140,7 +140,8 @@ void KeypointSource::process_record(const Record& record, Context& context, filt
   if (scale) image.camera.model.lasting_stretch_scale = lasting_stretch_scale(*scale);
   network_.configure(settings.network);
   const pose::PoseSighting& sighting =
-      network_.process(record.time, frame.image_number(), frame.view(), predicted_position_camera(image, filter));
+      network_.process(record.time, frame.image_number(), frame.view(),
+                       aiding_.searches() ? std::nullopt : predicted_position_camera(image, filter));
   if (sighting.status <= pose::SightingStatus::kKeypointsOnly) {
     remember_direction(settings, image.R_camera_eci, filter);
     keypoints_ = widened(sighting.keypoints, settings);

@@ -278,25 +278,87 @@ TEST(CdgnssAiding, BurnsAreFollowed) {
   EXPECT_TRUE(pair.filter_integers_are_true());
 }
 
-TEST(CdgnssAiding, SilenceIsCoastedAndFixedAgain) {
+/// The receivers track on while the crosslink is silent: their lock times at its end state that the integers hold.
+TEST(CdgnssAiding, SilenceIsCoastedAndEndsWithTheIntegersOfBefore) {
   FilterPair pair(9);
   pair.fly_filter(30);
   const GpsTime last = *pair.carrier->last_pair();
-  pair.fly_alone(4);
+  const std::int32_t fixes = pair.carrier->report().fixes;
+  pair.fly_alone(60);
   EXPECT_EQ(pair.carrier->aid().state(), AidState::kSuspended);
-  EXPECT_FALSE(pair.estimator->estimate().is_inactive(CarrierFilter::ambiguity_index(0)));
-  pair.fly_alone(56);
   EXPECT_EQ(*pair.carrier->last_pair(), last);
-  EXPECT_TRUE(pair.estimator->estimate().is_inactive(CarrierFilter::ambiguity_index(0)));
   const double variance = pair.filter_covariance().topLeftCorner<3, 3>().trace();
   EXPECT_GT(variance, 1e-6);
   EXPECT_LT(pair.filter_position_error(), 5.0 * std::sqrt(variance));
+  pair.fly_filter(1);
+  EXPECT_EQ(pair.carrier->counters().starts, 1);
+  EXPECT_EQ(pair.carrier->report().fixes, fixes);
+  EXPECT_TRUE(pair.carrier->is_fixed());
+  EXPECT_TRUE(pair.filter_integers_are_true());
+  EXPECT_LT(pair.filter_position_error(), 3e-3);
+}
+
+/// After an hour, or where the receivers lost their locks, they are determined again.
+TEST(CdgnssAiding, ALongSilenceIsCoastedAndFixedAgain) {
+  FilterPair pair(9);
+  pair.fly_filter(30);
+  pair.fly_alone(30);
+  for (double& cycles : pair.target.cycles) cycles += 17.0 + static_cast<double>(&cycles - pair.target.cycles.data());
+  for (double& lock : pair.target.lock_start_s) lock = 1000.0 + seconds(pair.tag - test::start_time()) - 1.0;
   pair.fly_filter(20);
   EXPECT_EQ(pair.carrier->counters().starts, 1);
   EXPECT_TRUE(pair.carrier->is_fixed());
   EXPECT_TRUE(pair.filter_integers_are_true());
   EXPECT_LT(pair.filter_position_error(), 3e-3);
 }
+
+struct SilentBurn {
+  int silence_s = 0;
+  double dv_mps = 0.0;
+  bool keeps_lock = true;
+};
+
+class UnreportedBurn : public testing::TestWithParam<SilentBurn> {};
+
+/// The servicer burns at the beginning of the silence, without a report.
+void burn_unreported(FilterPair& pair, const Vector3& dv_rtn) {
+  const GpsTime burn_time = pair.estimator->epoch() + duration_of_seconds(4);
+  const orbit::CartesianState after = orbit::apply_impulse_rtn(pair.servicer.state_at(burn_time), dv_rtn);
+  const filter::Propagation back(burn_time, kEarth, Vector3::UnitX());
+  pair.servicer.start = back.coast(after, -seconds(burn_time - test::start_time()));
+}
+
+// Required: no valid estimate is wrong by more than five sigma for longer than three epochs after the silence, and what
+// was found is reported.
+TEST_P(UnreportedBurn, IsFoundWithinThreeEpochsAndReported) {
+  const SilentBurn& burn = GetParam();
+  for (const int axis : {0, 1, 2}) {
+    FilterPair pair(31U + static_cast<unsigned>(axis));
+    pair.fly_filter(30);
+    burn_unreported(pair, burn.dv_mps * Vector3::Unit(axis));
+    pair.fly_alone(burn.silence_s / 10);
+    if (!burn.keeps_lock) {
+      for (double& cycles : pair.target.cycles) {
+        cycles += 17.0 + static_cast<double>(&cycles - pair.target.cycles.data());
+      }
+      for (double& lock : pair.target.lock_start_s) lock = 1000.0 + seconds(pair.tag - test::start_time()) - 1.0;
+    }
+    EXPECT_LE(epochs_until_reported(pair, 3), 3) << axis;
+    for (int k = 0; k < 60; ++k) {
+      pair.fly_filter(1);
+      const double sigma_m = std::sqrt(pair.filter_covariance().topLeftCorner<3, 3>().trace());
+      ASSERT_LT(pair.filter_position_error(), 5.0 * sigma_m) << axis << ' ' << k;
+    }
+    EXPECT_TRUE(pair.carrier->is_fixed()) << axis;
+    EXPECT_TRUE(pair.filter_integers_are_true()) << axis;
+    EXPECT_LT(pair.filter_position_error(), 5e-3) << axis;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(OutagesAndSizes, UnreportedBurn,
+                         testing::Values(SilentBurn{60, 1e-3}, SilentBurn{300, 1e-3}, SilentBurn{1200, 20e-3},
+                                         SilentBurn{300, 0.3e-3}, SilentBurn{300, 1e-3, false},
+                                         SilentBurn{900, 5e-3, false}));
 
 TEST(CdgnssAiding, AShortSilenceKeepsTheIntegers) {
   FilterPair pair(9);

@@ -213,7 +213,7 @@ TEST(CarrierFilter, AReleasedChannelIsInactive) {
   for (int k = 0; k < 3; ++k) flight.take(10.0);
   const std::size_t last = kSatellites - 1;
   EXPECT_FALSE(flight.estimator->estimate().is_inactive(CarrierFilter::wander_index(last)));
-  for (int k = 0; k < 13; ++k) flight.take(10.0, last);
+  for (int k = 0; k < 14; ++k) flight.take(10.0, last);
   EXPECT_TRUE(flight.estimator->estimate().is_inactive(CarrierFilter::wander_index(last)));
   EXPECT_TRUE(flight.estimator->estimate().is_inactive(CarrierFilter::ambiguity_index(last)));
   EXPECT_FALSE(flight.estimator->estimate().is_inactive(CarrierFilter::wander_index(0)));

@@ -70,6 +70,8 @@ class KeypointFlight {
     filter->set_apriori(known);
   }
 
+  double network_scale = 1.0;  ///< of the positions of single-image poses
+
   KeypointEditStatus step(bool has_image = true, const Eigen::Quaterniond& turned = Eigen::Quaterniond::Identity()) {
     const vbar::test::MeasuredEpoch& measured = network.measure(next, turned);
     filter->advance_to(measured.time, burns);
@@ -84,6 +86,7 @@ class KeypointFlight {
     if (has_image) {
       image.keypoints = measured.keypoints;
       image.pnp = measured.pnp;
+      if (image.pnp) image.pnp->pose.position_camera_m *= network_scale;
     }
     const KeypointEditStatus status = aiding->process(image, *filter);
     if (filter->has_relative()) error = error_of(turned);

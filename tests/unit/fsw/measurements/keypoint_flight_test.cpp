@@ -352,19 +352,43 @@ TEST_F(KeypointFaults, NoAttitudeStartsBeforeDusk) {
   EXPECT_FALSE(flown.filter->has_attitude());
 }
 
-/// The network sees nothing of a lit target that should be in the image: the orbit stays, its covariance grows.
-TEST_F(KeypointFaults, AMissingTargetInflatesTheCovarianceAlone) {
+/// The network sees nothing of a lit target that should be in the image: the target is searched in the whole image.
+/// That it is missing shows nothing of where it is: the estimate is kept, and its covariance is that of a coast.
+TEST_F(KeypointFaults, AMissingTargetIsSearchedAndTheEstimateKept) {
   hand_over();
   while (flown.next < 60) flown.step();
-  const Vector6 roe = flown.filter->roe();
-  const double before = flown.sigma_m();
+  EXPECT_FALSE(flown.aiding->searches());
   for (int k = 0; k < 13; ++k) flown.step(false);
-  EXPECT_GT(flown.sigma_m(), 2.0 * before);
+  EXPECT_TRUE(flown.aiding->searches());
+  const Vector6 roe = flown.filter->roe();
+  for (int k = 0; k < 30; ++k) flown.step(false);
   EXPECT_LT((flown.filter->roe() - roe).norm() * 7.0e6, 5.0);
-  // Not without end: 10 % suffices to search the whole image.
-  for (int k = 0; k < 100; ++k) flown.step(false);
-  EXPECT_LT(flown.sigma_m(), 10.0);
-  EXPECT_EQ(flown.filter->solution_status(), SolutionStatus::kEstimated);
+  EXPECT_LT(flown.error.position_m, 4.0 * flown.sigma_m());
+  EXPECT_LT(flown.sigma_m(), 0.5);
+  EXPECT_EQ(flown.aiding->counters().inflations, 0);
+  EXPECT_LE(steps_until_keypoints(10), 10);
+  EXPECT_FALSE(flown.aiding->searches());
+}
+
+/// Poses that are far from the estimate and agree with each other are those of a displaced target; poses that agree
+/// with nothing are those of a network in error.
+TEST_F(KeypointFaults, PosesWithoutAgreementDoNotSpoilTheEstimate) {
+  hand_over();
+  while (flown.next < 140) flown.step();
+  const double before = flown.sigma_m();
+  const double error = flown.error.position_m;
+  for (int k = 0; k < 12; ++k) {
+    // Another attitude and another range in each image.
+    const Eigen::Quaterniond turned(Eigen::AngleAxisd(1.3 * k, Vector3::Unit(k % 3)));
+    flown.network_scale = k % 2 == 0 ? 0.3 : 2.5;
+    flown.step(true, turned);
+  }
+  flown.network_scale = 1.0;
+  EXPECT_EQ(flown.aiding->counters().inflations, 0);
+  EXPECT_GT(flown.aiding->counters().undecided, 0);
+  EXPECT_LT(flown.sigma_m(), 3.0 * before);
+  EXPECT_LT(flown.error.position_m, error + 0.1);
+  EXPECT_LE(steps_until_keypoints(10), 10);
 }
 
 }  // namespace
