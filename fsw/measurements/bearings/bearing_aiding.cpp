@@ -75,7 +75,7 @@ using filter::SolutionStatus;
 // it.
 constexpr int kRejectedBeforeWeighing = 3;
 constexpr int kAgreeingBeforeClosing = 4;
-constexpr std::size_t kLargestWindow = 40;
+constexpr std::size_t kLargestWindow = 30;
 // Log-likelihood by which a changed orbit must exceed the orbit as estimated: a probability of 1e-3. From the second
 // limit down, more scatter than stated explains the bearings, and is used for the next ones.
 constexpr double kDecisive = 7.0;

@@ -22,7 +22,7 @@ constexpr std::array<UnknownBurn, 4> kBurns{{{1e-3, 1e-3}, {1e-2, 5e-3}, {0.1, 0
 
 constexpr std::array<double, 8> kScatters{1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0};
 
-constexpr int kMaxIterations = 6;
+constexpr int kMaxIterations = 4;
 constexpr double kConverged = 0.01;  // of a sigma, all unknowns together
 
 constexpr double square(double x) {

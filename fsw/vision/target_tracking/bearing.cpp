@@ -8,7 +8,7 @@ namespace vbar::fsw::target_tracking {
 namespace {
 
 // Variance of the scatter over that at 90 deg, at full phase.
-constexpr double kScatterOfFull = 0.4;
+constexpr double kScatterOfFull = 0.35;
 // From a phase angle of about 100 deg on, bodies of flat faces have an offset that is constant.
 constexpr double kLargestOffset = 1.2;  // square of it, over that at 90 deg
 
@@ -35,7 +35,7 @@ double cos_phase_of(const Vector3& sight, const Vector3& sun_eci) {
 
 double centroid_scatter_growth(double cos_phase) {
   const double dark = 1.0 - cos_phase;
-  return math::sqrt(kScatterOfFull + (1.0 - kScatterOfFull) * dark * dark);
+  return math::sqrt(kScatterOfFull + (1.0 - kScatterOfFull) * dark * dark * dark);
 }
 
 Vector3 brightness_displacement(const Vector3& sight, const Vector3& sun_eci) {

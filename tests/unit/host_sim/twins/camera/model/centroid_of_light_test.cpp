@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <random>
 #include <vector>
 
@@ -67,13 +66,12 @@ Moments moments_of(TargetRenderer& renderer, const Vector3& centre_of_mass, doub
   return result;
 }
 
-// The model's figures are of facets without shadows and without the rise of reflectivity at grazing incidence, which
-// the renderer has. 16 axes determine a standard deviation to a sixth.
+// 16 axes determine a standard deviation to a sixth, and the mean to a tenth of the scatter.
 TEST(CentroidOfLight, OfTangoScattersWithThePhaseAngleAsModelled) {
   const CadModel model = load_cad_model(vbar::tests::source_path("data/models/tango.obj"));
   TargetRenderer renderer(model);
   const Vector3 centre_of_mass(0.0, 0.018823529411764704, 0.160794117647059);  // data/bodies/tango.toml
-  constexpr double kScatterAtHalfPhase_m = 0.068, kOffsetAtHalfPhase_m = 0.111;
+  constexpr double kScatterAtHalfPhase_m = 0.097, kOffsetAtHalfPhase_m = 0.163;
   for (const double degrees : {45.0, 90.0, 140.0}) {
     const double phase = degrees * M_PI / 180.0;
     const Moments moments = moments_of(renderer, centre_of_mass, phase, 16, 8);
@@ -83,12 +81,8 @@ TEST(CentroidOfLight, OfTangoScattersWithThePhaseAngleAsModelled) {
                                                                      Vector3(std::sin(phase), 0.0, -std::cos(phase)),
                                                                      kOffsetAtHalfPhase_m)
                               .x();
-    std::printf("%.0f deg: offset %.3f modelled %.3f, lasting %.3f %.3f, scatter %.3f %.3f modelled %.3f m\n", degrees,
-                moments.mean, offset, moments.lasting.x(), moments.lasting.y(), moments.changing.x(),
-                moments.changing.y(), modelled);
-    std::fflush(stdout);
     EXPECT_NEAR(moments.mean, offset, 0.04) << degrees;
-    EXPECT_NEAR(scatter / modelled, 1.0, 0.5) << degrees;
+    EXPECT_NEAR(scatter / modelled, 1.0, 0.35) << degrees;
   }
 }
 
