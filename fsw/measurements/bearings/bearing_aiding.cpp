@@ -267,7 +267,7 @@ void BearingAiding::adapt_noise(const target_tracking::BearingMeasurement& beari
 void BearingAiding::adapt_centroid_noise(const filter::RelativeNavigationFilter& filter) {
   constexpr double kShare = 0.1;
   constexpr double kMaxMisfit = 15.0;
-  constexpr double kMinScale = 0.03, kMaxScale = 9.0;
+  constexpr double kMinScale = 0.01, kMaxScale = 9.0;
   if (!filter.is_precisely_determined()) return;
   const double misfit = std::min(0.5 * last_update_.nis, kMaxMisfit);
   centroid_scale_ = std::clamp(centroid_scale_ * (1.0 + kShare * (misfit - 1.0)), kMinScale, kMaxScale);
