@@ -30,14 +30,16 @@ std::optional<measurements::Pointing> Gnc::pointing_to_target() const {
   const navigation::NavigationState& state = navigation_.state();
   if (state.has_target) {
     const Result<measurements::Pointing> pointing = measurements::pointing_at(now_, state.servicer, state.target);
-    return pointing.ok() ? std::optional(pointing.value()) : std::nullopt;
+    if (!pointing.ok()) return std::nullopt;
+    return measurements_.source<measurements::BearingSource>().searched(pointing.value());
   }
   const auto& last_seen_rtn = measurements_.source<measurements::KeypointSource>().last_seen_rtn();
   if (!last_seen_rtn) return std::nullopt;
   return measurements::Pointing{.time = now_, .boresight_rtn = *last_seen_rtn};
 }
 
-/// Points at the estimated position of the target, not at that of the last image: it moves between images.
+/// Points at the estimated position of the target, not at that of the last image: it moves between images; at where it
+/// may be if it was lost.
 void Gnc::point_camera() {
   const std::optional<measurements::Pointing> pointing = pointing_to_target();
   if (!pointing) return;

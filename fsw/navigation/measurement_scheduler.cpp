@@ -224,7 +224,13 @@ void MeasurementScheduler::isolate(GpsTime now, std::size_t index, Source& sourc
   if constexpr (std::is_same_v<Source, measurements::GnssAbsoluteSource>) {
     if (is_too_large) filter_.inflate_absolute_orbit(kAbsoluteOrbitInflation);
   } else if (!filter_.is_confirmed_by_others({.bit = Source::kUse})) {
-    if (is_too_large) filter_.scale_relative_covariance(mean);
+    if (is_too_large) {
+      if constexpr (requires { source.explain_excess(mean, filter_); }) {
+        source.explain_excess(mean, filter_);
+      } else {
+        filter_.scale_relative_covariance(mean);
+      }
+    }
   } else {
     isolated_until_[index] = now + kIsolation;
     if constexpr (requires { source.suspend(now, filter_); }) {

@@ -8,6 +8,7 @@
 #include "fsw/filter/relative_navigation_filter.h"
 #include "fsw/measurements/aid.h"
 #include "fsw/measurements/bearings/bearing_batch.h"
+#include "fsw/measurements/bearings/orbit_hypotheses.h"
 #include "fsw/packets/messages.h"
 #include "fsw/vision/target_tracking/bearing.h"
 
@@ -16,10 +17,11 @@ namespace vbar::fsw::measurements {
 // Measurement model of a bearing: rows of the filter.
 
 struct BearingModel {
-  /// 1 sigma, m, per axis: centroid of the target's light about its mean, independent from image to image (its attitude
-  /// and illumination change meanwhile). In metres it is the same at all ranges: negligible beyond 30 km, most of the
-  /// error within 10 km.
+  /// 1 sigma, m, per axis, at a phase angle of 90 deg (target_tracking::centroid_scatter_growth): centroid of the
+  /// target's light about its mean, independent from image to image (its attitude and illumination change meanwhile).
+  /// In metres it is the same at all ranges: negligible beyond 30 km, most of the error within 10 km.
   double centroid_noise_m = 0.08;
+  double scatter = 1.0;  ///< factor on the variance of a bearing, as its innovations show it
 
   bool operator==(const BearingModel&) const = default;
 };
@@ -27,8 +29,9 @@ struct BearingModel {
 /// Fills the batch with the two components of the measured direction across the predicted one (bearing_axes(), rad).
 /// The filter stands at the time of the bearing. Any status of the orbit conversions if there is no target to predict.
 ///
-/// Model: axes (rho + sun_offset s + wander - o) / |...| + bearing bias; rho is sampled over the ROE, all others
-/// enter linearly.
+/// Model: axes (rho + offset s - o) / |...| + growth wander / |...| + bearing bias; s is the displacement of a unit
+/// offset towards the Sun and `growth` that of the scatter of the centroid with the phase angle. rho is sampled over
+/// the ROE, all others enter linearly.
 Status bearing_rows(const filter::RelativeNavigationFilter& filter, const target_tracking::BearingMeasurement& bearing,
                     const Vector3& sun_eci, const BearingModel& model, filter::MeasurementBatch& batch);
 
@@ -54,8 +57,8 @@ struct BearingCounters {
   std::int32_t used = 0;
   std::int32_t rejected = 0;
   std::int32_t batches_failed = 0;
-  std::int32_t inflations = 0;  ///< of the covariance, after consecutive rejections
-  std::int32_t restarts = 0;    ///< of the batch, after the orbit had been initialised
+  std::int32_t revisions = 0;  ///< of the orbit, after bearings that an unknown burn explains and scatter does not
+  std::int32_t restarts = 0;   ///< of the batch, after the orbit had been initialised
 };
 
 class BearingAiding {
@@ -73,6 +76,11 @@ class BearingAiding {
 
   /// Notes that nothing was measured until `now`: the state follows the age of the last accepted bearing.
   void check_age(GpsTime now);
+
+  /// Responds to innovations whose mean normalised square, per degree of freedom, has left its band above: white ones
+  /// are scatter of the bearings, which get more of it; of others the orbit lags, whose covariance grows, where the
+  /// last bearing determines it: across the line of sight and in what is correlated with it.
+  void explain_excess(double mean_nis, filter::RelativeNavigationFilter& filter);
 
   /// Deactivates the own blocks; the orbit stays.
   void stop(GpsTime now, filter::RelativeNavigationFilter& filter);
@@ -94,7 +102,18 @@ class BearingAiding {
   void adapt_noise(const target_tracking::BearingMeasurement& bearing, const filter::MeasurementBatch& batch,
                    filter::RelativeNavigationFilter& filter);
   void adapt_centroid_noise(const filter::RelativeNavigationFilter& filter);
-  void count_rejection(GpsTime time, filter::RelativeNavigationFilter& filter);
+  void adapt_scatter();
+  void note_correlation(const target_tracking::BearingMeasurement& bearing, const filter::MeasurementBatch& batch);
+  void count_rejection(const target_tracking::BearingMeasurement& bearing, const Vector3& sun_eci,
+                       filter::RelativeNavigationFilter& filter);
+  void add_to_window(const target_tracking::BearingMeasurement& bearing, const Vector3& sun_eci,
+                     const filter::RelativeNavigationFilter& filter);
+  void close_window();
+  [[nodiscard]] EstimatedOrbit estimated_orbit(const filter::RelativeNavigationFilter& filter,
+                                               const Vector3& sun_eci) const;
+  void weigh_window(GpsTime time, const Vector3& sun_eci, filter::RelativeNavigationFilter& filter);
+  void restart_batch(GpsTime time, filter::RelativeNavigationFilter& filter);
+  [[nodiscard]] BearingModel model_now() const;
 
   BearingSettings settings_;
   Aid aid_;
@@ -102,10 +121,17 @@ class BearingAiding {
   GpsTime burns_until_;  ///< impulses of the filter before this are in the batch
   GpsTime last_accepted_;
   GpsTime last_processed_;
-  int rejected_in_a_row_ = 0;
+  std::optional<target_tracking::BearingMeasurement> last_bearing_;  ///< the last one processed
+  Vector3 last_sun_eci_ = Vector3::UnitX();
+  GpsTime before_window_;       ///< the last accepted bearing before the window
+  int rejected_in_window_ = 0;  ///< of the bearings in the batch, which since the first of them is a window of evidence
+  int agreeing_in_window_ = 0;  ///< consecutive ones at its end that agree with the orbit as estimated
   int rejected_in_excess_ = 0;  ///< rejections in excess of accepted ones, while others confirm the orbit
   int agreeing_in_a_row_ = 0;   ///< while contradicting
-  std::size_t inflations_in_a_row_ = 0;
+  double scatter_ = 1.0;        ///< BearingModel::scatter
+  double correlation_ = 0.0;    ///< of neighbouring normalised innovations: mean product,
+  double mean_square_ = 1.0;    ///< and mean square, over some Consistency::kMemory bearings
+  Vector2 last_normalised_ = Vector2::Zero();
   double centroid_scale_ =
       1.0;  ///< factor on the variances of the centroid, adapted while receivers determine the orbit
   BearingUpdate last_update_;

@@ -35,7 +35,8 @@ void BearingBatch::add_burn(GpsTime time, const Vector3& dv_eci) {
 
 /// All orbits are propagated backwards together, from the last bearing to the first.
 Status BearingBatch::linearise(const orbit::CartesianState& servicer, const Unknowns& x,
-                               const orbit::EarthOrientation& earth, const Vector3& sun_eci, Linearised& result) {
+                               const orbit::EarthOrientation& earth, const Vector3& sun_eci, double huber,
+                               Linearised& result) {
   result = {};
   const auto chief = orbit::qns_from_cartesian(servicer);
   if (!chief.ok()) return chief.status();
@@ -76,17 +77,31 @@ Status BearingBatch::linearise(const orbit::CartesianState& servicer, const Unkn
     jacobian.rightCols<2>() = Matrix2::Identity();
     const Vector2 residual = -(target + x.tail<2>());
     const double distance = math::sqrt(residual.squaredNorm()) / bearing.sigma;
-    const double weight = distance <= kHuber ? 1.0 : kHuber / distance;
+    const double weight = distance <= huber ? 1.0 : huber / distance;
     const double information = weight / (bearing.sigma * bearing.sigma);
     result.normal += information * jacobian.transpose().lazyProduct(jacobian);
     result.right += information * jacobian.transpose().lazyProduct(residual);
-    result.cost += distance <= kHuber ? distance * distance : kHuber * (2.0 * distance - kHuber);
+    result.cost += distance <= huber ? distance * distance : huber * (2.0 * distance - huber);
+    result.chi_square += distance * distance;
+    ++result.bearings;
     if (distance <= kOutlier) {
       ++result.used;
       result.chi_square_of_used += distance * distance;
     }
   }
   return math::is_finite(result.cost) ? Status::kOk : Status::kNotFinite;
+}
+
+Result<BearingBatch::NormalEquations> BearingBatch::normal_equations(const orbit::CartesianState& servicer,
+                                                                     const Unknowns& x,
+                                                                     const orbit::EarthOrientation& earth,
+                                                                     const Vector3& sun_eci) {
+  if (count_ == 0) return Status::kNotReady;
+  constexpr double kNotRobust = 1e300;
+  Linearised all;
+  if (const Status status = linearise(servicer, x, earth, sun_eci, kNotRobust, all); status != Status::kOk)
+    return status;
+  return static_cast<const NormalEquations&>(all);
 }
 
 Result<BatchSolution> BearingBatch::solve(const orbit::CartesianState& servicer, const Vector6& prior_roe,
@@ -106,7 +121,7 @@ Result<BatchSolution> BearingBatch::solve(const orbit::CartesianState& servicer,
 
   Unknowns x = before;
   Linearised now;
-  if (const Status status = linearise(servicer, x, earth, sun_eci, now); status != Status::kOk) return status;
+  if (const Status status = linearise(servicer, x, earth, sun_eci, kHuber, now); status != Status::kOk) return status;
   double damping = 0.0;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     const Normal information = now.normal + prior_information;
@@ -116,7 +131,7 @@ Result<BatchSolution> BearingBatch::solve(const orbit::CartesianState& servicer,
     if (!factor.ok()) return Status::kSingular;
     const Unknowns step = factor.solve(now.right - prior_information.lazyProduct(x - before));
     Linearised next;
-    const Status status = linearise(servicer, x + step, earth, sun_eci, next);
+    const Status status = linearise(servicer, x + step, earth, sun_eci, kHuber, next);
     if (status != Status::kOk || cost_of(next, x + step) > cost_of(now, x) * (1.0 + 1e-9) + 1e-9) {
       damping = damping == 0.0 ? 1e-3 : 10.0 * damping;
       continue;

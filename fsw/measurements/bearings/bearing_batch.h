@@ -51,6 +51,25 @@ class BearingBatch {
   [[nodiscard]] GpsTime first_time() const { return bearings_[0].time; }
   [[nodiscard]] GpsTime last_time() const { return bearings_[count_ - 1].time; }
 
+  static constexpr int kUnknowns = 8;  ///< six ROE, two of bias
+  using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
+  using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+  /// Normal equations of all bearings about a solution: chi-square + 2 right' dx - dx' normal dx.
+  struct NormalEquations {
+    Normal normal = Normal::Zero();
+    Unknowns right = Unknowns::Zero();
+    double chi_square = 0.0;
+    int bearings = 0;
+  };
+  static Unknowns unknowns_of(const Vector6& roe) {
+    Unknowns x = Unknowns::Zero();
+    x.head<6>() = roe;
+    return x;
+  }
+  /// Without robust weights, about `x` at the time of the last bearing. kNotReady without bearings.
+  Result<NormalEquations> normal_equations(const orbit::CartesianState& servicer, const Unknowns& x,
+                                           const orbit::EarthOrientation& earth, const Vector3& sun_eci);
+
   /// `servicer` at the time of the last bearing; `prior_roe` and its covariance are of that time too. Has no side
   /// effects; kNotReady with fewer than ten bearings, kDidNotConverge, kSingular, kOutOfRange if too few bearings fit
   /// or those used do not fit well enough.
@@ -59,25 +78,20 @@ class BearingBatch {
                               const Vector3& sun_eci, const BearingBatchSettings& settings);
 
  private:
-  static constexpr int kUnknowns = 8;  ///< six ROE, two of bias
-  static constexpr int kOrbits = 8;    ///< servicer, target, and the target with each element increased
+  static constexpr int kOrbits = 8;  ///< servicer, target, and the target with each element increased
   static constexpr std::size_t kMaxBurns = 32;
-  using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
-  using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
   struct ImpulseAt {
     GpsTime time;
     Vector3 dv_eci = Vector3::Zero();
   };
-  struct Linearised {
-    Normal normal = Normal::Zero();
-    Unknowns right = Unknowns::Zero();
+  struct Linearised : NormalEquations {
     double cost = 0.0;
     double chi_square_of_used = 0.0;
     int used = 0;
   };
 
   Status linearise(const orbit::CartesianState& servicer, const Unknowns& x, const orbit::EarthOrientation& earth,
-                   const Vector3& sun_eci, Linearised& result);
+                   const Vector3& sun_eci, double huber, Linearised& result);
 
   std::array<target_tracking::BearingMeasurement, kCapacity> bearings_{};
   std::size_t count_ = 0;

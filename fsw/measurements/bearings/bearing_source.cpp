@@ -59,6 +59,10 @@ static_assert(static_cast<int>(BearingEditStatus::kBatch) == telemetry_image::kE
 // Stars that fit an attitude of three components with a contradiction left to see.
 constexpr int kMinStars = 5;
 
+// Of a centroid's scatter, the part that the rotation of the target does not average: 0.43 with a rotation from image
+// to image (Monte Carlo of target_tracking/bearing.h), more with a slow one.
+constexpr double kLastingShare = 0.625;
+
 constexpr double kSpeedOfLight = 299792458.0;  // m/s
 
 // The target is visible when it is illuminated. Near an edge of the shadow it may or may not be.
@@ -86,6 +90,7 @@ bool BearingSource::configure(const Configuration& configuration) {
     const auto bearings = bearing_settings(*angles_only);
     if (!optics.ok() || !bearings.ok()) return false;
     configuration.settings.processes.of<BrightnessOffset>().sigma = angles_only->brightness_offset_m;
+    configuration.settings.processes.of<CentroidWander>().sigma = kLastingShare * angles_only->centroid_noise_m;
     configuration.settings.processes.of<BearingBias>().sigma = angles_only->bearing_bias;
     aiding_.configure(bearings.value());
     const bool is_new = unit != camera_ || telecommands.is_new<camera_configuration>(unit) ||
@@ -120,15 +125,37 @@ void BearingSource::process_record(const Record& record, Context& context, filte
   if (!image.has_image() || image.image_time() != record.time) return context.inbox.count_unusable_time();
   has_image_ = true;
   const Vector3 sun_eci = orbit::sun_position_gcrf(record.time).normalized();
-  const target_tracking::Sighting& sighting = tracking_.process(
-      {record.time, image.image_number(), image.tiles_missing(), image.view()}, priors_of(context, sun_eci, filter));
+  const target_tracking::ImagePriors priors = priors_of(context, sun_eci, filter);
+  const target_tracking::Sighting& sighting =
+      tracking_.process({record.time, image.image_number(), image.tiles_missing(), image.view()}, priors);
   if (sighting.status == target_tracking::SightingStatus::kNoStars) ++images_without_stars_;
   std::optional<target_tracking::BearingMeasurement> bearing;
   if (sighting.status == target_tracking::SightingStatus::kBearing) bearing = sighting.bearing;
   edit_status_ = aiding_.process(record.time, bearing, sun_eci, filter);
+  note_search(priors, filter);
   a_roe_m_ = filter.a_roe_m();
   a_roe_covariance_m2_ = filter.a_roe_covariance_m2();
   last_image_ = record.time;
+}
+
+/// Stars in the image show that the target would have been in it. Another source that determines the orbit ends a
+/// search.
+void BearingSource::note_search(const target_tracking::ImagePriors& priors,
+                                const filter::RelativeNavigationFilter& filter) {
+  const target_tracking::Sighting& sighting = tracking_.sighting();
+  const bool is_expected = priors.target && priors.detection_probability > kEdgeProbability &&
+                           sighting.star_method != target_tracking::StarMethod::kNone;
+  const bool is_used = edit_status_ == BearingEditStatus::kFilter || edit_status_ == BearingEditStatus::kBatch ||
+                       filter.is_confirmed_by_others(BearingAiding::kSource);
+  search_.note(is_expected, sighting.target >= 0, is_used);
+}
+
+Pointing BearingSource::searched(const Pointing& to_target) const {
+  const Vector2 offset = search_.scan_offset();
+  Pointing pointing = to_target;
+  if (offset.squaredNorm() == 0.0) return pointing;
+  pointing.boresight_rtn = (pointing.boresight_rtn + Vector3(offset.x(), 0.0, offset.y())).normalized();
+  return pointing;
 }
 
 target_tracking::ImagePriors BearingSource::priors_of(const Context& context, const Vector3& sun_eci,
@@ -153,7 +180,12 @@ target_tracking::ImagePriors BearingSource::priors_of(const Context& context, co
     }
     const auto prediction =
         target_tracking::prediction_of(relative, filter::covariance_rtn(filter.estimate(), priors.servicer));
-    if (prediction.ok()) priors.target = prediction.value();
+    if (prediction.ok()) {
+      const double radius = math::sqrt(priors.servicer.position_eci.squaredNorm());
+      const double rate = math::sqrt(priors.servicer.velocity_eci.squaredNorm()) / radius;
+      priors.target = search_.widened(prediction.value(), rate);
+    }
+    priors.is_search = search_.is_widened();
     priors.detection_probability = detection_probability(target.value(), sun_eci);
   }
   std::size_t count = 0;

@@ -10,6 +10,7 @@
 #include "fsw/measurements/source.h"
 #include "fsw/packets/messages.h"
 #include "fsw/vision/target_tracking/angles_only_tracking.h"
+#include "fsw/vision/target_tracking/search_region.h"
 
 namespace vbar::fsw::measurements {
 
@@ -42,7 +43,15 @@ class BearingSource {
   /// Whether the bearing of the last image was processed.
   [[nodiscard]] bool has_aided() const { return last_image_ && *last_image_ == aiding_.last_accepted(); }
   void watch(GpsTime now, filter::RelativeNavigationFilter& /*filter*/) { aiding_.check_age(now); }
-  void stop(GpsTime now, filter::RelativeNavigationFilter& filter) { aiding_.stop(now, filter); }
+  void explain_excess(double mean_nis, filter::RelativeNavigationFilter& filter) {
+    aiding_.explain_excess(mean_nis, filter);
+  }
+  void stop(GpsTime now, filter::RelativeNavigationFilter& filter) {
+    aiding_.stop(now, filter);
+    search_ = {};
+  }
+  /// The pointing to the target, off it where a lost target is searched.
+  [[nodiscard]] Pointing searched(const Pointing& to_target) const;
   /// Attitude by the image of the step, if enough of its stars were identified.
   [[nodiscard]] std::optional<StarAttitude> star_attitude() const;
   /// Telemetry of the image of the step, if there was one.
@@ -51,6 +60,7 @@ class BearingSource {
  private:
   [[nodiscard]] target_tracking::ImagePriors priors_of(const Context& context, const Vector3& sun_eci,
                                                        const filter::RelativeNavigationFilter& filter);
+  void note_search(const target_tracking::ImagePriors& priors, const filter::RelativeNavigationFilter& filter);
   void report_image(const Telemetry& telemetry) const;
   void report_objects(const Telemetry& telemetry) const;
 
@@ -58,6 +68,7 @@ class BearingSource {
   std::optional<TwoExposures> exposures_;  ///< if it takes images for keypoints too
   target_tracking::AnglesOnlyTracking tracking_;
   BearingAiding aiding_;
+  target_tracking::SearchRegion search_;
   std::array<target_tracking::OwnBurn, filter::RelativeNavigationFilter::kMaxImpulses> burns_since_image_{};
   std::optional<GpsTime> last_image_;
   bool has_image_ = false;

@@ -177,6 +177,7 @@ SightingStatus AnglesOnlyTracking::find_target(const TakenImage& image, const Im
   input.candidates = std::span(candidates_).first(candidates);
   input.burns = priors.burns;
   input.prediction = priors.target;
+  input.is_search = priors.is_search;
   input.detection_probability = priors.detection_probability;
   const Result<target_tracking::TrackerOutput> tracked = tracker_.step(input);
   if (!tracked.ok()) return SightingStatus::kNoTarget;

@@ -82,6 +82,7 @@ struct ImagePriors {
   Vector3 velocity_over_c_eci = Vector3::Zero();      ///< velocity of the camera, barycentric, for aberration
   std::optional<Matrix3> R_camera_eci;                ///< attitude as commanded
   std::optional<target_tracking::Prediction> target;  ///< motion predicted by navigation, as seen by the camera
+  bool is_search = false;                             ///< the prediction was widened: the target was lost
   double detection_probability = 0.95;                ///< that of the target: smaller if it may be in eclipse
   std::span<const target_tracking::OwnBurn> burns;    ///< since the last image, in order of time
 };

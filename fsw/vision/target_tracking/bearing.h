@@ -21,8 +21,26 @@ struct BearingMeasurement {
 /// its normal, then the direction itself. For a target ahead or behind the first is (up to its sign) the vertical.
 Matrix3 bearing_axes(const Vector3& direction_eci, const orbit::CartesianState& servicer);
 
-/// Direction to the centre of brightness: displaced to the illuminated side by `offset_m` times the component of the
-/// Sun direction across the line of sight.
+// Centroid of the light of a body of unknown attitude: the mean offset from the centre of mass, towards the Sun, and
+// the scatter about it grow with the phase angle a, as less of the body is lit and farther from its middle. A Lambert
+// sphere has the offset R (3 pi/16) (1 + cos a) sin a / (sin a + (pi - a) cos a) (Lindegren 1977), which R (3 pi/16)
+// sqrt(1 - cos a) approximates by 10 %; bodies of flat faces follow it up to 100 deg and stay there.
+//
+// Monte Carlo with the renderer, of Tango (0.86 m: square root of the mean silhouette) at phase angles of 45, 90 and
+// 140 deg, over 16 axes of rotation with 8 attitudes each: mean offset 7.3, 16.3 and 16.4 cm, scatter on each axis 5.7,
+// 9.7 and 20 cm, and 3, 3 and 4.5 cm of its means over a rotation.
+
+/// Cosine of the phase angle, target to Sun and target to camera; `sight` from the camera, `sun_eci` a unit vector.
+double cos_phase_of(const Vector3& sight, const Vector3& sun_eci);
+
+/// Scatter of the centroid at a phase angle over that at 90 deg.
+double centroid_scatter_growth(double cos_phase);
+
+/// Displacement of the centre of brightness across the line of sight, towards the Sun, for an offset of one metre at a
+/// phase angle of 90 deg.
+Vector3 brightness_displacement(const Vector3& sight, const Vector3& sun_eci);
+
+/// Centre of brightness of a target with an offset of `offset_m` at a phase angle of 90 deg.
 Vector3 centre_of_brightness(const Vector3& target_eci, const Vector3& camera_eci, const Vector3& sun_eci,
                              double offset_m);
 

@@ -5,6 +5,7 @@
 #include "fsw/orbit/propagate.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
+#include "fsw/vision/target_tracking/search_region.h"
 
 namespace vbar::fsw::target_tracking {
 
@@ -105,6 +106,16 @@ Result<Prediction> prediction_of(const Vector3& direction_rtn, const Matrix2& co
   prediction.along_track_m = along_track_m;
   prediction.along_track_sigma_fraction = kUnknownFraction;
   return prediction;
+}
+
+Prediction SearchRegion::widened(const Prediction& prediction, double mean_motion) const {
+  Prediction wide = prediction;
+  if (!is_widened()) return wide;
+  // An error of the relative orbit turns with the orbit: its rates are those of an oscillation.
+  const double variance = sigma() * sigma();
+  const double of_rates = variance * mean_motion * mean_motion;
+  wide.covariance.diagonal() += (Vector5() << variance, variance, of_rates, of_rates, of_rates).finished();
+  return wide;
 }
 
 }  // namespace vbar::fsw::target_tracking

@@ -38,6 +38,7 @@ Result<TrackerOutput> TargetTracker::step(const TrackerInput& input) {
 
   work_.view = view.value();
   work_.has_prediction = input.prediction.has_value();
+  work_.is_search = input.is_search && work_.has_prediction;
   work_.prediction = work_.has_prediction ? *input.prediction : Prediction{};
   const double per_m = -0.5 / work_.view.semi_major_axis;
   work_.bend = per_m * work_.prediction.along_track_m;

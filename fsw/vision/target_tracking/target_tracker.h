@@ -7,6 +7,9 @@
 // bearings contains no information on which of them is the target: tracks are scored without the prediction (beyond its
 // gate), and compared by the likelihood ratio of their relative orbits: an orbit as predicted against any.
 //
+// A target that was lost is searched in a wide region (search_region.h), where motion alone tells less. Its history
+// then counts as well: the brightness that it had, reduced to one distance, and tracks that were seen beside it.
+//
 // An object belongs to one satellite. Detections that a better track shares do not establish a track.
 
 #include <array>
@@ -34,6 +37,9 @@ struct TrackerSettings {
   double shape_floor = 1.5e-4;     ///< 1-sigma floor of each element of a relative orbit (relative_motion.h)
   double certainty = 0.99;         ///< required certainty of the association in an image
   double magnitude_sigma = 1.5;    ///< 1-sigma variation of a tumbling target from image to image
+  double history_sigma = 1.0;      ///< magnitudes, 1-sigma variation of the target from one hour to another
+  double beside_loss = 10.0;       ///< log-likelihood of being the target, of a track that was seen beside it
+  int beside_images = 30;          ///< number of images that establish that
   double sharp_object_loss = 2.3;  ///< log-likelihood: the target's light falls on more than one pixel
   int confirm_hits = 5;            ///< number M of detections that establishes a track...
   int confirm_images = 7;          ///< ...among N images
@@ -48,6 +54,7 @@ struct TrackerInput {
   std::span<const Candidate> candidates;  ///< at most kMaxCandidates
   std::span<const OwnBurn> burns;         ///< since the last image, in order of time
   std::optional<Prediction> prediction;
+  bool is_search = false;              ///< the target was lost: objects are compared with its history too
   double detection_probability = 0.9;  ///< that the target, if in the field, is a candidate: 0 in eclipse
 };
 
@@ -92,6 +99,8 @@ class TargetTracker {
   void grow();
   void share_objects();
   void compare_with_prediction();
+  [[nodiscard]] double history_loss(const Hypothesis& hypothesis) const;
+  void note_history(const Hypothesis& target);
   void prune();
   void merge_accounts();
   void merge_tracks();
@@ -129,6 +138,7 @@ class TargetTracker {
   int images_watched_ = 0;          ///< in which the target was expected, since the last reset of the tracks
   int deposing_images_ = 0;
   bool ambiguous_ = false;
+  std::optional<double> target_log_power_;  ///< flux of the target times its squared distance, running mean
   double score_margin_ = 0.0;
 
   std::size_t count_ = 0;
@@ -139,6 +149,7 @@ class TargetTracker {
     ServicerView view;
     Prediction prediction;
     bool has_prediction = false;
+    bool is_search = false;
     bool is_prediction_narrow = false;  ///< few other objects are to be expected in its gate
     double bend = 0.0;
     double bend_rate = 0.0;

@@ -32,7 +32,8 @@ struct Hypothesis {
   std::int32_t images_since_hit = 0;  ///< number of images, in which it was expected, since its last object
   std::uint32_t recent = 0;  ///< one bit per image in which it was expected or seen, newest lowest: 1 seen, and the
                              ///< object was not that of a better track
-  bool established = false;  ///< was seen in M of N images with residuals as expected
+  std::int32_t images_beside = 0;                ///< number of images in which another track was certainly the target
+  bool established = false;                      ///< was seen in M of N images with residuals as expected
   std::array<std::int16_t, kHistory> history{};  ///< candidates by image, newest first
 };
 

@@ -13,6 +13,9 @@ constexpr double kAlone = 99.0;
 constexpr int kRivalHits = 3;
 constexpr int kOwnObjects = 2;
 constexpr int kDeposeAfter = 3;
+constexpr double kMagnitudesPerLog = 1.0857362047581296;  // 2.5 / ln 10
+constexpr double kMaxHistoryLoss = 8.0;
+constexpr double kHistoryGain = 0.02;        // of an image: the mean of an hour
 constexpr SlopeFloors kRegular{1e-6, 1e-8};  // keep a covariance regular
 
 }  // namespace
@@ -71,7 +74,36 @@ void TargetTracker::compare_with_prediction() {
     const SlopeDistance as_other =
         slope_distance(Vector5::Zero(), state.covariance + unknown * unknown * unit, kRegular);
     hypothesis.distance = as_target.square;
-    hypothesis.identity = 0.5 * (as_other.log_determinant - as_target.log_determinant - as_target.square);
+    hypothesis.identity =
+        0.5 * (as_other.log_determinant - as_target.log_determinant - as_target.square) - history_loss(hypothesis);
+  }
+}
+
+// Log-likelihood that the history of the target takes from a track, if it is searched. All objects have nearly the same
+// phase angle, so that the change of brightness with it cancels in the comparison of two.
+double TargetTracker::history_loss(const Hypothesis& hypothesis) const {
+  if (!work_.is_search) return 0.0;
+  double loss = hypothesis.images_beside >= settings_.beside_images ? settings_.beside_loss : 0.0;
+  const double distance = math::abs(work_.prediction.along_track_m);
+  if (!target_log_power_ || !(distance > 0.0)) return loss;
+  const double log_power = hypothesis.log_flux + 2.0 * math::log(distance);
+  const double magnitudes = kMagnitudesPerLog * (log_power - *target_log_power_);
+  // The error of the distance is one of brightness.
+  const double of_distance = 2.0 * kMagnitudesPerLog * std::min(work_.prediction.along_track_sigma_fraction, 1.0);
+  const double sigma = math::hypot(settings_.history_sigma, of_distance);
+  return loss + std::min(0.5 * magnitudes * magnitudes / (sigma * sigma), kMaxHistoryLoss);
+}
+
+// A target that was certain where it was predicted leaves its brightness, and the tracks beside it are not its own.
+void TargetTracker::note_history(const Hypothesis& target) {
+  const double distance = math::abs(work_.prediction.along_track_m);
+  if (!work_.is_prediction_narrow || work_.is_search || !(distance > 0.0)) return;
+  const double log_power = target.log_flux + 2.0 * math::log(distance);
+  target_log_power_ =
+      target_log_power_ ? *target_log_power_ + kHistoryGain * (log_power - *target_log_power_) : log_power;
+  for (std::size_t k = 0; k < count_; ++k) {
+    Hypothesis& h = hypotheses_[k];
+    if (h.track != target_track_ && h.established && h.images_beside < settings_.beside_images) ++h.images_beside;
   }
 }
 
@@ -189,6 +221,7 @@ TrackerOutput TargetTracker::report() {
   output.confirmed = certain && own && fits && deposing_images_ == 0;
   if (output.confirmed) {
     output.state = TrackerState::kTracking;
+    note_history(*target);
   } else {
     output.candidate = -1;
   }

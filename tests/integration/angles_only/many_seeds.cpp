@@ -73,7 +73,7 @@ int main(int argc, char** argv) {
     const auto& counters = navigation.bearings().counters();
     std::printf(" | psd %.0e nis %.3f own orbit %.2f used %d refused %d failed %d inflated %d restarts %d\n",
                 navigation.filter().relative_orbit().noise().psd(), nis / updates, own, counters.used,
-                counters.rejected, counters.batches_failed, counters.inflations, counters.restarts);
+                counters.rejected, counters.batches_failed, counters.revisions, counters.restarts);
   }
   std::printf("med");
   for (const auto& of : errors) std::printf(" | %8.2f          ", vbar::accuracy::median(of));

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include "fsw/orbit/rtn.h"
@@ -73,7 +74,7 @@ class BearingAidingScene : public testing::Test {
   BearingEditStatus look(bool has_bearing = true) {
     filter->advance_to(now, burns);
     std::optional<target_tracking::BearingMeasurement> bearing;
-    const Vector2 error = kSigma * noise.normal2();
+    const Vector2 error = kSigma * (scatter * noise.normal2() + shift);
     if (has_bearing) bearing = bearing_of(now, servicer, target, kSigma, error);
     return aiding.process(now, bearing, scene_sun(), *filter);
   }
@@ -105,6 +106,8 @@ class BearingAidingScene : public testing::Test {
   orbit::CartesianState servicer, target;
   std::vector<Burn> burns;
   Noise noise{11};
+  double scatter = 1.0;             ///< of the bearings, over their standard deviation
+  Vector2 shift = Vector2::Zero();  ///< common to them, in standard deviations
   std::unique_ptr<filter::RelativeNavigationFilter> filter = std::make_unique<filter::RelativeNavigationFilter>();
   BearingAiding aiding;
 };
@@ -156,17 +159,61 @@ TEST_F(BearingAidingScene, AnHourOfSilenceSuspendsTheSourceAndLeavesTheOrbit) {
   EXPECT_EQ(aiding.aid().state(), AidState::kAiding);
 }
 
-/// Bearings that contradict the orbit are refused, then the covariance grows; the servicer's own orbit follows its
+/// Bearings that contradict the orbit are refused, then the orbit is revised; the servicer's own orbit follows its
 /// receiver, by its own gate.
 TEST_F(BearingAidingScene, AnUnreportedBurnIsRefusedThenFollowed) {
   watch(120);
   servicer = orbit::apply_impulse_rtn(servicer, {0.02, -0.05, 0.05});
   watch(240);
   EXPECT_GT(aiding.counters().rejected, 0);
-  EXPECT_GT(aiding.counters().inflations + aiding.counters().restarts, 0);
+  EXPECT_GT(aiding.counters().revisions + aiding.counters().restarts, 0);
   EXPECT_TRUE(valid());
   EXPECT_LT(error(), 4.0 * sigma());
   EXPECT_EQ(watch(1), BearingEditStatus::kFilter);
+}
+
+/// Five times the stated scatter for twenty images: the bearings are refused or weigh less, and a correct orbit stays.
+TEST_F(BearingAidingScene, BearingsThatScatterLeaveACorrectOrbit) {
+  watch(240);
+  const double before = sigma();
+  scatter = 5.0;
+  watch(20);
+  EXPECT_GT(aiding.counters().rejected, 3);
+  EXPECT_EQ(aiding.counters().revisions + aiding.counters().restarts, 0);
+  EXPECT_TRUE(valid());
+  EXPECT_LT(sigma(), 1.2 * before);
+  EXPECT_LT(error(), 4.0 * sigma());
+  scatter = 1.0;
+  watch(30);
+  EXPECT_EQ(aiding.aid().state(), AidState::kAiding);
+  EXPECT_LT(sigma(), 1.2 * before);
+  EXPECT_LT(error(), 4.0 * sigma());
+}
+
+/// White innovations larger than stated are scatter: the orbit stays. Those of one sign are an error of the orbit
+/// across the line of sight: its covariance becomes that of the innovations there, and grows less along the line of
+/// sight.
+TEST_F(BearingAidingScene, LargeInnovationsOfOneSignInflateTheOrbitAndWhiteOnesDoNot) {
+  watch(240);
+  const auto variances = [&] {
+    const Matrix6 rtn = filter::covariance_rtn(filter->estimate(), filter->servicer());
+    return Vector3(rtn.diagonal().head<3>());
+  };
+  const Vector3 before = variances();
+  aiding.explain_excess(4.0, *filter);
+  EXPECT_EQ(variances(), before);
+  watch(60);
+  shift = Vector2(2.0, 2.0);
+  watch(12);
+  const Matrix6 lagging = filter->roe_covariance();
+  const double distance = (target.position_eci - servicer.position_eci).norm();
+  aiding.explain_excess(4.0, *filter);
+  const Vector3 after = variances();
+  for (const int axis : {0, 2}) EXPECT_GT(std::sqrt(after(axis)), kSigma * distance) << axis;
+  const Matrix6 excess = (filter->roe_covariance() - lagging) / lagging.trace();
+  const Vector6 eigenvalues = Eigen::SelfAdjointEigenSolver<Matrix6>(excess).eigenvalues();  // in ascending order
+  EXPECT_GT(eigenvalues(4), 0.0);
+  EXPECT_LT(std::abs(eigenvalues(3)), 1e-9 * eigenvalues(5));
 }
 
 TEST_F(BearingAidingScene, ASecondAprioriDoesNotReplaceAnEstimate) {
@@ -226,11 +273,13 @@ TEST(BearingRows, TheirUpdateIsKalmans) {
                                           kAt<BearingBias> + 1};
   const auto bearing = bearing_of(scene_start(), servicer, scene_target(servicer, roe), 12.0 * kArcsec, {2e-5, -3e-5});
   const Matrix3 axes = target_tracking::bearing_axes(bearing.direction_eci, servicer);
+  const double growth = target_tracking::centroid_scatter_growth(
+      target_tracking::cos_phase_of(scene_target(servicer, roe).position_eci - servicer.position_eci, scene_sun()));
   const auto shown = [&](const Small& x) {
     const Vector3 target = scene_target(servicer, x.head<6>()).position_eci;
     const Vector3 sight =
         target_tracking::centre_of_brightness(target, servicer.position_eci, scene_sun(), x(6)) - servicer.position_eci;
-    return Vector2(axes.topRows<2>() * sight.normalized() + x.segment<2>(7) / sight.norm() + x.tail<2>());
+    return Vector2(axes.topRows<2>() * sight.normalized() + growth * x.segment<2>(7) / sight.norm() + x.tail<2>());
   };
   Small mean, sigma;
   for (int k = 0; k < 11; ++k) {
@@ -246,7 +295,7 @@ TEST(BearingRows, TheirUpdateIsKalmans) {
   model.centroid_noise_m = 0.5;
   const double range = (scene_target(servicer, roe).position_eci - servicer.position_eci).norm();
   const Eigen::Matrix<double, 11, 11> p = sigma.cwiseAbs2().asDiagonal();
-  const double variance = bearing.sigma * bearing.sigma + 0.25 / (range * range);
+  const double variance = bearing.sigma * bearing.sigma + 0.25 * growth * growth / (range * range);
   const Matrix2 s = h * p * h.transpose() + variance * Matrix2::Identity();
   const Eigen::Matrix<double, 11, 2> gain = p * h.transpose() * s.inverse();
   const Small expected = mean - gain * shown(mean);

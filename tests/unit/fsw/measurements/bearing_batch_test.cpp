@@ -150,15 +150,34 @@ TEST(BearingAxes, AreThoseOfTheOrbitForATargetBehind) {
   EXPECT_LT((above * above.transpose() - Matrix3::Identity()).norm(), 1e-12);
 }
 
-TEST(CentreOfBrightness, LiesAcrossTheLineOfSightOnTheLitSide) {
+// Tango by Monte Carlo with the renderer (bearing.h), over the value at 90 deg, known to a sixth.
+TEST(CentroidScatter, GrowsWithThePhaseAngle) {
+  constexpr double kDegree = M_PI / 180.0;
+  EXPECT_NEAR(target_tracking::centroid_scatter_growth(std::cos(45.0 * kDegree)), 5.7 / 9.7, 0.1);
+  EXPECT_NEAR(target_tracking::centroid_scatter_growth(std::cos(90.0 * kDegree)), 1.0, 1e-9);
+  EXPECT_NEAR(target_tracking::centroid_scatter_growth(std::cos(140.0 * kDegree)), 20.0 / 9.7, 0.35);
+}
+
+/// Against a Lambert sphere (Lindegren 1977), whose offset at a phase angle a is its radius times
+/// (3 pi/16) (1 + cos a) sin a / (sin a + (pi - a) cos a).
+TEST(CentreOfBrightness, LiesAcrossTheLineOfSightOnTheLitSideAsThatOfASphere) {
   const Vector3 target(7e6, 0.0, 0.0), camera(7e6, 1000.0, 0.0);
-  const Vector3 sun = Vector3(1.0, 1.0, 0.0).normalized();
-  // The sun's direction across the sight (-y) is +x, of length cos 45 deg.
-  EXPECT_LT((target_tracking::centre_of_brightness(target, camera, sun, 0.2) - target -
-             Vector3(0.2 * std::sqrt(0.5), 0.0, 0.0))
-                .norm(),
-            1e-9);
-  // Full and new target: none.
+  for (const double phase : {0.3, 0.8, M_PI / 2.0, 1.7}) {
+    // From the target the camera is in the direction +y.
+    const Vector3 sun(std::sin(phase), std::cos(phase), 0.0);
+    const double offset = 0.2;
+    const Vector3 centre = target_tracking::centre_of_brightness(target, camera, sun, offset);
+    const double lune = std::sin(phase) + (M_PI - phase) * std::cos(phase);
+    const double sphere = offset * (1.0 + std::cos(phase)) * std::sin(phase) / lune;
+    EXPECT_NEAR((centre - target).x(), sphere, 0.13 * sphere) << phase;
+    EXPECT_NEAR((centre - target).y(), 0.0, 1e-9);
+    EXPECT_NEAR((centre - target).z(), 0.0, 1e-9);
+  }
+  // A body of flat faces has no more at larger angles: Tango by Monte Carlo (bearing.h).
+  const double angle = 140.0 * M_PI / 180.0;
+  const Vector3 sun(std::sin(angle), std::cos(angle), 0.0);
+  EXPECT_NEAR(target_tracking::centre_of_brightness(target, camera, sun, 0.163).x() - target.x(), 0.164, 0.03);
+  // Full target: none.
   EXPECT_LT((target_tracking::centre_of_brightness(target, camera, Vector3(0.0, 1.0, 0.0), 0.2) - target).norm(), 1e-9);
 }
 

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "fsw/vision/target_tracking/search_region.h"
 #include "tests/support/sanitizers.h"
 #include "tests/unit/fsw/vision/target_tracking/scene.h"
 
@@ -244,6 +245,31 @@ TEST(TargetTracker, KnowsTheTargetAgainAfterTheEclipse) {
     const TrackerOutput output = tracker.step(scene.input()).value();
     EXPECT_EQ(output.confirmed, k >= 6 && scene.target_index() >= 0) << k;
   }
+}
+
+// An hour without light on the detector, after which navigation errs by 1.4 deg, far beyond what it states, among two
+// decoys. The bearings are not used by navigation, which therefore stays wrong.
+TEST(TargetTracker, FindsALostTargetWhereThePredictionIsNot) {
+  constexpr double kMeanMotion = 1.06e-3;
+  SceneMaker maker(five_kilometres());
+  TargetTracker tracker;
+  SearchRegion region;
+  int found = 0;
+  int wrong = 0;
+  for (int k = 0; k < 300; ++k) {
+    Scene scene = maker.next();
+    if (k >= 150 && k < 170) scene.candidates.clear();
+    TrackerInput input = scene.input();
+    if (k >= 150) input.prediction->slopes.head<2>() += Vector2(0.02, -0.015);
+    input.prediction = region.widened(*input.prediction, kMeanMotion);
+    input.is_search = region.is_widened();
+    const TrackerOutput output = tracker.step(input).value();
+    region.note(input.detection_probability > 0.5, output.confirmed, output.confirmed && k < 150);
+    if (k < 170 || !output.confirmed) continue;
+    ++(output.candidate == scene.target_index() ? found : wrong);
+  }
+  EXPECT_EQ(wrong, 0);
+  EXPECT_GT(found, 60);
 }
 
 TEST(TargetTracker, WithoutAPredictionTheOnlySatelliteIsTheTarget) {
