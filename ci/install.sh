@@ -3,6 +3,7 @@
 #   ci/install.sh fly      packages to build vbar and fly missions, in process and on the emulated Zynq
 #   ci/install.sh images   fly, and Mesa's off-screen OpenGL, which missions with a digital camera load (50 MB)
 #   ci/install.sh test     images, and packages for the unit and integration tests, format and lint
+#   ci/install.sh view     npm and node, with which host_sim/view/web/install.sh fetches what the page of a run is made of
 #   ci/install.sh peers    the independent programs that tests compare with (half a gigabyte); without them their tests are skipped
 #   ci/install.sh train    packages to train the keypoint network
 # Several groups may be given; the default is fly.
@@ -40,15 +41,16 @@ peers=(aravis-tools aravis-tools-cli nftables chrony python3-crcmod python3-nump
   slurm-wlm munge)  # a cluster on loopback, for campaigns
 train=("${images[@]}" python3 python3-numpy python3-torch)
 
-# The wire formats' peer is an npm package. Only if no other npm is installed: a vendor's node conflicts with
-# Debian's.
-command -v npm >/dev/null 2>&1 || peers+=(nodejs npm)
+# The page of a run is made of npm packages, and the wire formats' peer is one. Only if no other npm is installed: a vendor's node
+# conflicts with Debian's.
+view=()
+command -v npm >/dev/null 2>&1 || { view+=(nodejs npm) && peers+=(nodejs npm); }
 
 packages=()
 for group in "${@:-fly}"; do
   case $group in
-    fly | images | test | peers | train) declare -n list=$group && packages+=("${list[@]}") ;;
-    *) echo "ci/install.sh: '$group' is not a group; accepted: fly, images, test, peers, train" >&2 && exit 2 ;;
+    fly | images | test | view | peers | train) declare -n list=$group && packages+=("${list[@]}") ;;
+    *) echo "ci/install.sh: '$group' is not a group; accepted: fly, images, test, view, peers, train" >&2 && exit 2 ;;
   esac
 done
 

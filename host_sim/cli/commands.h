@@ -56,6 +56,13 @@ struct ReportOptions {
 /// Writes the report.html of one run, or a comparison of several.
 int report_command(const ReportOptions& options);
 
+struct ViewOptions {
+  std::vector<std::filesystem::path> run_folders;
+  std::filesystem::path out;  ///< file of the page; empty: in the run folder, or beside the first of several
+};
+/// Writes the page on which a run, or several over each other, can be looked at.
+int view_command(const ViewOptions& options);
+
 struct CheckOptions {
   std::vector<std::filesystem::path> run_folders;
   std::filesystem::path limits;  ///< mission file whose limits hold in place of those of the runs' own missions

@@ -223,6 +223,15 @@ int execute(int argc, char** argv) {
                        "exit code 3 unless all runs gave the same outputs as the first");
   report_app->callback([&] { exit_code = report_command(report); });
 
+  ViewOptions view;
+  CLI::App* view_app = program.add_subcommand(
+      "view",
+      "write the page on which a run is watched: scene, plots and tables over time; more runs are drawn beside it");
+  view_app->add_option("run", view.run_folders, "run folders")->required();
+  view_app->add_option("--out", view.out,
+                       "file of the page; view.html in the run folder, or beside the first of several, unless given");
+  view_app->callback([&] { exit_code = view_command(view); });
+
   CheckOptions check;
   CLI::App* check_app = program.add_subcommand("check", "judge runs by the limits of their mission, for a CI");
   check_app->add_option("run", check.run_folders, "run folders")->required();

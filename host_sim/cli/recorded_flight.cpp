@@ -25,6 +25,7 @@
 #include "host_sim/installation/sensor_kinds.h"
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/report/run_folder.h"
+#include "host_sim/report/sections/comparison.h"
 #include "host_sim/report/sections/html_report.h"
 #include "host_sim/report/statistics.h"
 #include "host_sim/report/summarise.h"
@@ -37,6 +38,7 @@
 #include "host_sim/simulation/run_control.h"
 #include "host_sim/truth/earth/time_scales.h"
 #include "host_sim/twins/run_log.h"
+#include "host_sim/view/view_page.h"
 
 namespace vbar::app {
 
@@ -386,7 +388,11 @@ void report_flight(const std::filesystem::path& folder, const std::filesystem::p
                    const report::RunRecord& record, const std::optional<std::string>& trouble) {
   try {
     const bool has_report = order.mission.record.tables;
-    const std::filesystem::path report = has_report ? report::write_html_report(folder, record) : folder;
+    const auto write_pages = [&] {
+      const view::ViewedRun run{report::run_names({name}).front(), record, &order.mission};
+      return view::write_pages(folder, run, mission::data_directory());
+    };
+    const std::filesystem::path report = has_report ? write_pages() : folder;
     if (!order.quiet && !record.waypoints.empty()) fmt::print("{}", report::waypoint_table(record));
     report_health(record.summary, order.quiet);
     report_rejections(record.summary);

@@ -76,6 +76,7 @@ constexpr std::string_view kSummary = "summary.json";
 constexpr std::string_view kPictures = "gallery";  // a folder
 constexpr std::string_view kPacketLog = "packets.lcmlog";
 constexpr std::string_view kReport = "report.html";
+constexpr std::string_view kView = "view.html";
 
 [[noreturn]] void fail(const fs::path& folder, std::string_view what) {
   throw std::runtime_error(fmt::format("{}: {}", folder.string(), what));
@@ -147,11 +148,14 @@ fs::path packet_log_file(const fs::path& run_folder) {
 fs::path report_file(const fs::path& run_folder) {
   return run_folder / kReport;
 }
+fs::path view_file(const fs::path& run_folder) {
+  return run_folder / kView;
+}
 
 std::vector<std::string> flight_files(Extensions extensions) {
   std::vector<std::string> names{std::string(kPacketLog), std::string(kPictures)};
   std::vector<std::string> whole = table_files(extensions);
-  whole.emplace_back(kReport);
+  whole.insert(whole.end(), {std::string(kReport), std::string(kView)});
   for (const std::string& name : whole)
     names.insert(names.end(), {name, files::PartialFile::part_of(name).string(), files::neighbour_of(name).string()});
   return names;

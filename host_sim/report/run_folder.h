@@ -45,6 +45,7 @@ class RunLock {
 [[nodiscard]] std::filesystem::path summary_file(const std::filesystem::path& run_folder);
 [[nodiscard]] std::filesystem::path packet_log_file(const std::filesystem::path& run_folder);
 [[nodiscard]] std::filesystem::path report_file(const std::filesystem::path& run_folder);
+[[nodiscard]] std::filesystem::path view_file(const std::filesystem::path& run_folder);
 
 /// Names of what a flight may leave in its folder beside its summary: log, tables, page, pictures, and what a kill
 /// leaves of them.

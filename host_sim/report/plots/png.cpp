@@ -84,11 +84,15 @@ std::vector<std::uint8_t> encoded_png(int width, int height, unsigned format, co
   return png;
 }
 
-std::string png_data_uri(std::span<const std::uint8_t> png) {
-  std::string text(4 * ((png.size() + 2) / 3) + 1, '\0');  // one for the terminating zero
-  EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()), png.data(), static_cast<int>(png.size()));
+std::string base64(std::span<const std::uint8_t> bytes) {
+  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');  // one for the terminating zero
+  EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()), bytes.data(), static_cast<int>(bytes.size()));
   text.pop_back();
-  return "data:image/png;base64," + text;
+  return text;
+}
+
+std::string png_data_uri(std::span<const std::uint8_t> png) {
+  return "data:image/png;base64," + base64(png);
 }
 
 ColourPicture::ColourPicture(int width, int height) : width_(width), height_(height) {

@@ -35,6 +35,9 @@ struct Stretch {
 [[nodiscard]] std::vector<std::uint8_t> encoded_png(int width, int height, unsigned format, const std::uint8_t* pixels,
                                                     const std::uint8_t* palette = nullptr);
 
+/// Returns bytes as base64, for a page that contains them.
+[[nodiscard]] std::string base64(std::span<const std::uint8_t> bytes);
+
 /// data:image/png;base64,... for a page that contains its pictures.
 [[nodiscard]] std::string png_data_uri(std::span<const std::uint8_t> png);
 

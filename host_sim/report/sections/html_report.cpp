@@ -48,7 +48,7 @@ std::string waypoint_table(const RunRecord& record) {
   return text;
 }
 
-std::string html_report(const RunRecord& record) {
+std::string html_report(const RunRecord& record, std::string_view note) {
   std::vector<Section> sections{glance_section(record),     faults_section(record),   waypoint_section(record),
                                 trajectory_section(record), elements_section(record), maneuver_section(record),
                                 navigation_section(record)};
@@ -58,14 +58,17 @@ std::string html_report(const RunRecord& record) {
   }
   for (auto* const section : {attitude_section, guidance_section, health_section, computer_section})
     sections.push_back(section(record));
-  std::string body = overview(record) + contents(sections);
+  std::string body = overview(record);
+  if (!note.empty()) body += fmt::format("<p>{}</p>\n", note);
+  body += contents(sections);
   for (const Section& section : sections) body += section_html(section);
   return html_page(fmt::format("{} (seed {})", record.summary.mission, record.summary.seed), body);
 }
 
-std::filesystem::path write_html_report(const std::filesystem::path& run_folder, const RunRecord& record) {
+std::filesystem::path write_html_report(const std::filesystem::path& run_folder, const RunRecord& record,
+                                        std::string_view note) {
   std::filesystem::path file = report_file(run_folder);
-  files::replace_text_file(file, html_report(record));
+  files::replace_text_file(file, html_report(record, note));
   return file;
 }
 

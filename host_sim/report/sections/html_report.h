@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "host_sim/report/run_record.h"
 #include "host_sim/report/sections/comparison.h"
@@ -15,10 +16,12 @@ namespace vbar::report {
 
 // report.html: a run as an engineer judges it, in one file that opens from disk.
 
-[[nodiscard]] std::string html_report(const RunRecord& record);
+/// `note`: HTML of a line below the overview; empty: none.
+[[nodiscard]] std::string html_report(const RunRecord& record, std::string_view note = {});
 
 /// Writes report.html into the run's folder and returns where. Throws std::runtime_error that names the file.
-std::filesystem::path write_html_report(const std::filesystem::path& run_folder, const RunRecord& record);
+std::filesystem::path write_html_report(const std::filesystem::path& run_folder, const RunRecord& record,
+                                        std::string_view note = {});
 
 // A page with several runs side by side: the comparison's table, delta-v and ROE of all runs in the same plots.
 

@@ -235,7 +235,7 @@ class RunsAreKept(Evidence):
         victim.write_text("content")
         copy = self.folder / "linked"
         shutil.copytree(self.flown, copy)
-        for name in ("run.lock", "summary.json.new", "packets.lcmlog", "truth.csv", "truth.csv.part", "report.html"):
+        for name in ("run.lock", "summary.json.new", "packets.lcmlog", "truth.csv", "truth.csv.part", "report.html", "view.html"):
             (copy / name).unlink(missing_ok=True)
             (copy / name).symlink_to("../victim")
         self.expect(vbar("run", MISSION, "--force", "--out", copy, *overrides(SHORT)), DONE)

@@ -46,6 +46,15 @@ def timeless_page(folder):
     return [line for line in (folder / "report.html").read_text().splitlines() if not any(word in line for word in words)]
 
 
+def timeless_view(folder):
+    """The page on which the run is watched, with a summary as above."""
+    before, runs, after = re.split(r'(?<=id="runs">)(.*?)(?=</script>)', (folder / "view.html").read_text(), maxsplit=1, flags=re.DOTALL)
+    runs = json.loads(runs)
+    for run in runs:
+        run["summary"], run["name"] = timeless(run["summary"]), ""
+    return re.sub("<title>.*?</title>", "", before), runs, after
+
+
 def files_of(folder):
     return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
 
@@ -58,6 +67,8 @@ def differences(a, b):
             same = timeless(summary_of(a)) == timeless(summary_of(b))
         elif name == "report.html":
             same = timeless_page(a) == timeless_page(b)
+        elif name == "view.html":
+            same = timeless_view(a) == timeless_view(b)
         else:
             same = (a / name).read_bytes() == (b / name).read_bytes()
         if not same:

@@ -1,0 +1,46 @@
+#pragma once
+// view.html: a run to be looked at, turned and scrubbed in a browser. One file that opens from disk and loads nothing:
+// its programs (host_sim/view/web) and the tables of the run are in it.
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "host_sim/mission/mission.h"
+#include "host_sim/report/run_record.h"
+
+namespace vbar::view {
+
+/// Returns the page without data; empty in a build that was configured without the programs of the page.
+[[nodiscard]] std::string_view page_template();
+
+/// How a build comes to contain the page, for messages.
+inline constexpr const char* kHowToGetPage =
+    "this build of vbar is without the page of runs: install npm (ci/install.sh view), run "
+    "host_sim/view/web/install.sh, "
+    "then configure and build again";
+
+/// A run on the page. Without its mission the page lacks shapes, cameras, keep-out and Sun, and states `note`.
+struct ViewedRun {
+  std::string name;
+  const report::RunRecord& record;
+  const mission::Mission* mission = nullptr;
+  std::string note{};
+};
+
+/// Returns the page of at least one run; the others are drawn beside the first one. Throws std::runtime_error without
+/// page_template().
+[[nodiscard]] std::string view_page(std::span<const ViewedRun> runs, const std::filesystem::path& data_directory);
+
+/// Throws std::runtime_error that names the file.
+void write_view(const std::filesystem::path& file, std::span<const ViewedRun> runs,
+                const std::filesystem::path& data_directory);
+
+/// Writes view.html, if this build has the page, then report.html, which links to it or states how to get it, into the
+/// run's folder. Returns the file of the report. Throws std::runtime_error that names the file.
+std::filesystem::path write_pages(const std::filesystem::path& run_folder, const ViewedRun& run,
+                                  const std::filesystem::path& data_directory);
+
+}  // namespace vbar::view

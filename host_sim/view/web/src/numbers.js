@@ -1,0 +1,64 @@
+// Numbers at the cursor: true value, estimate, error, 3 sigma. A click copies the value as the table has it.
+
+import { norm } from './frames.js';
+import { number, withUnit } from './units.js';
+
+const kVectors = [['relative_position_rtn', 'm', 'm', ''], ['relative_velocity_rtn', 'mps', 'm/s', ' vel.']];
+const kElements = [['da', 'a δa'], ['dlambda', 'a δλ'], ['dex', 'a δex'], ['dey', 'a δey'], ['dix', 'a δix'], ['diy', 'a δiy']];
+
+/** Values of the rows at the cursor: what the page shows and what a test compares with the files. */
+export function valuesAt(run, t) {
+  const at = (table) => { const found = run.table(table); const row = found?.rowAt(t) ?? -1; return (name) => (row < 0 ? undefined : found.column(name)?.cells[row]); };
+  const value = (cell) => (cell === undefined || cell === '' ? NaN : Number(cell));
+  const truth = at('truth'), estimate = at('estimate'), sunlight = at('sunlight');
+  const rows = [];
+  const components = (of) => ['r', 't', 'n'].map((a) => value(of(`relative_position_rtn_${a}_m`)));
+  const range = norm(components(truth)), estimatedRange = norm(components(estimate));
+  rows.push({ name: 'Range', unit: 'm', truth: range, estimate: estimatedRange, error: estimatedRange - range });
+  for (const [stem, unitName, unit, suffix] of kVectors)
+    for (const a of ['r', 't', 'n']) {
+      const [x, e, s] = [value(truth(`${stem}_${a}_${unitName}`)), value(estimate(`${stem}_${a}_${unitName}`)), value(estimate(`sigma_rtn_${a}_${unitName}`))];
+      rows.push({ name: a.toUpperCase() + suffix, unit, truth: x, estimate: e, error: e - x, sigma3: 3 * s, column: `truth.${stem}_${a}_${unitName}` });
+    }
+  for (const [element, name] of kElements) {
+    const [x, e] = [value(truth(`a_roe_mean_${element}_m`)), value(estimate(`a_roe_mean_${element}_m`))];
+    rows.push({ name, unit: 'm', truth: x, estimate: e, error: e - x, column: `truth.a_roe_mean_${element}_m` });
+  }
+  const words = [['Mode', estimate('mode')], ['Solver', estimate('active_solver')], ['Source', estimate('navigation_source')],
+                 ['Next waypoint', estimate('waypoint_index')], ['Burns planned', estimate('planned_burns')], ['Delta-v so far', withUnit(value(estimate('commanded_dv_mps')), 'm/s')],
+                 ['Sunlight', sunlight('servicer_sunlit') === undefined ? undefined : `${number(100 * value(sunlight('servicer_sunlit')), 3)} %`],
+                 ['Faults present', at('telemetry_health')('faults_present')]];
+  return { rows, words: words.filter(([, word]) => word !== undefined && word !== '') };
+}
+
+const element = (tag, text, kind) => { const made = document.createElement(tag); made.textContent = text; if (kind) made.className = kind; return made; };
+
+export class Numbers {
+  constructor(place, run, cursor) {
+    this.place = place;
+    this.run = run;
+    const { rows, words } = valuesAt(run, cursor.t);
+    this.table = element('table', '', 'numbers');
+    const head = this.table.createTHead().insertRow();
+    for (const name of ['', 'true', 'estimate', 'error', '3σ']) head.append(element('th', name));
+    const body = this.table.createTBody();
+    this.rows = rows.map((row) => { const made = body.insertRow(); made.append(element('th', row.name)); return [0, 1, 2, 3].map(() => made.insertCell()); });
+    this.facts = element('dl', '', 'facts');
+    this.place.append(this.table, this.facts);
+    this.table.addEventListener('click', (event) => { const raw = event.target.dataset?.raw; if (raw) { navigator.clipboard?.writeText(raw); event.target.classList.add('copied'); setTimeout(() => event.target.classList.remove('copied'), 500); } });
+    cursor.onChange((t) => this.show(t));
+    this.show(cursor.t);
+  }
+
+  show(t) {
+    const { rows, words } = valuesAt(this.run, t);
+    rows.forEach((row, k) => [row.truth, row.estimate, row.error, row.sigma3].forEach((value, c) => {
+      const cell = this.rows[k][c], shown = Number.isFinite(value);
+      cell.textContent = shown ? withUnit(value, row.unit, c < 2 ? 5 : 4) : value === undefined ? '' : '–';
+      cell.title = shown ? `${value} ${row.unit} (click to copy)` : '';
+      cell.dataset.raw = shown ? String(value) : '';
+      cell.classList.toggle('beyond', c === 2 && Math.abs(value) > row.sigma3);
+    }));
+    this.facts.replaceChildren(...words.flatMap(([name, word]) => [element('dt', name), element('dd', word)]));
+  }
+}

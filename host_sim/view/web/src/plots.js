@@ -1,0 +1,110 @@
+// Plots of a tab, with the one cursor: pointing at a plot moves the instant, and the instant moves the line in all plots.
+
+import uPlot from 'uplot';
+import { number, unitFor, withUnit } from './units.js';
+
+const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+const kHeight = 190;
+
+/** All curves over one ascending set of times. */
+function joined(curves) {
+  return curves.length === 1 ? [curves[0].x, curves[0].y] : uPlot.join(curves.map((c) => [c.x, c.y]));
+}
+
+/** The largest and, but for zeros, the smallest size of a value. */
+function sizes(curves) {
+  let most = 0, least = Infinity;
+  for (const { y } of curves)
+    for (const value of y) {
+      const size = value === null ? 0 : Math.abs(value);
+      if (size > most) most = size;
+      if (size > 0 && size < least) least = size;
+    }
+  return { most, least };
+}
+
+/** A range about zero that the largest of a hundred values may leave: the first seconds of a filter would hide all others. */
+function clipped(curves) {
+  const values = curves.flatMap((c) => c.y.filter((y) => y !== null).map(Math.abs)).sort((a, b) => a - b);
+  const most = 1.3 * values[Math.floor(0.985 * (values.length - 1))];
+  return most > 0 && values.at(-1) > 3 * most ? [-most, most] : undefined;
+}
+
+export class Plots {
+  constructor(element, cursor) {
+    this.element = element;
+    this.cursor = cursor;
+    this.plots = [];
+    cursor.onChange((t) => this.#mark(t));
+    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.show(this.shown));
+    new ResizeObserver(() => this.#fit()).observe(element);
+  }
+
+  show(plots, empty = 'This run has nothing to show here.') {
+    this.shown = plots;
+    for (const plot of this.plots) plot.destroy();
+    this.element.replaceChildren();
+    this.plots = plots.map((plot) => this.#make(plot));
+    if (!plots.length) {
+      const note = document.createElement('p');
+      note.className = 'empty';
+      note.textContent = empty;
+      this.element.append(note);
+    }
+    this.#fit();
+    setTimeout(() => this.#mark(this.cursor.t));  // the plots have their scales then
+  }
+
+  #make({ title, unit, curves, log, clip }) {
+    const { most, least } = sizes(curves), cut = clip && clipped(curves);
+    const { factor, name } = unitFor(unit, cut ? cut[1] : most), useLog = log && most > 100 * least;
+    const scaledCurves = curves.map((c) => ({ ...c, y: factor === 1 ? c.y : c.y.map((y) => (y === null ? null : y * factor)) }));
+    const data = joined(scaledCurves);
+    const series = scaledCurves.map((c) => ({
+      label: c.label, stroke: css(`--${c.colour}`), width: c.width ?? 1.5, dash: c.dash ? [5, 4] : undefined, spanGaps: false,
+      paths: c.points ? () => null : c.step ? uPlot.paths.stepped({ align: 1 }) : undefined,
+      points: c.points ? { show: true, size: 4, fill: css(`--${c.colour}`) } : { show: false }, value: (_, v) => (v === null || v === undefined ? '–' : number(v, 5)) }));
+    const bands = scaledCurves[0]?.band && scaledCurves[1]?.band ? [{ series: [1, 2], fill: css('--band') }] : [];
+    const axis = { stroke: css('--muted'), grid: { stroke: css('--grid'), width: 1 }, ticks: { stroke: css('--grid'), width: 1, size: 4 }, font: '11px system-ui, sans-serif' };
+    const plot = new uPlot({
+      title: `${title}${name ? `, ${name}` : ''}${cut ? ` (largest ${withUnit(most, unit, 3)})` : ''}`, width: 380, height: kHeight, series: [{ label: 'h', value: (_, v) => (v === null || v === undefined ? '–' : v.toFixed(4)) }, ...series], bands,
+      scales: { x: { time: false, range: (_, min, max) => (max > min ? [min, max] : [min - 1, max + 1]) }, y: useLog ? { distr: 3 } : cut ? { range: cut.map((y) => y * factor) } : {} },
+      axes: [{ ...axis, size: 24, values: (_, ticks) => ticks.map((t) => `${+t.toFixed(6)} h`) }, { ...axis, size: 58, values: useLog ? (_, ticks) => ticks.map((v) => (v === null ? '' : `${+v.toPrecision(3)}`)) : undefined }],
+      cursor: { y: false, drag: { x: true, y: false } }, legend: { live: true },
+      hooks: { setCursor: [(u) => this.#point(u)], setScale: [(u, key) => key === 'x' && this.#zoom(u)] },
+    }, data, this.element);
+    plot.over.addEventListener('mouseenter', () => { this.pointed = plot; });
+    plot.over.addEventListener('mouseleave', () => { this.pointed = undefined; this.#mark(this.cursor.t); });
+    return plot;
+  }
+
+  #point(plot) {
+    if (this.marking || this.pointed !== plot || this.cursor.playing || plot.cursor.left < 0) return;
+    this.cursor.set(plot.posToVal(plot.cursor.left, 'x') * 3600);
+  }
+
+  #mark(t) {
+    this.marking = true;
+    for (const plot of this.plots) {
+      if (plot === this.pointed && !this.cursor.playing) continue;
+      const left = plot.valToPos(t / 3600, 'x');
+      plot.setCursor({ left: left >= 0 && left <= plot.bbox.width / devicePixelRatio ? left : -10, top: 5 }, false);
+    }
+    this.marking = false;
+  }
+
+  #zoom(from) {
+    if (this.zooming) return;
+    this.zooming = true;
+    const { min, max } = from.scales.x;
+    for (const plot of this.plots) if (plot !== from && plot.scales.x.min !== undefined) plot.setScale('x', { min, max });
+    this.zooming = false;
+  }
+
+  #fit() {
+    const width = this.element.clientWidth - 14;
+    if (width <= 0) return;
+    const columns = Math.max(1, Math.min(this.plots.length, Math.floor(width / 360)));
+    for (const plot of this.plots) plot.setSize({ width: Math.floor(width / columns) - 8, height: kHeight });
+  }
+}

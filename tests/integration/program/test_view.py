@@ -1,0 +1,229 @@
+"""vbar view: the page of a run holds the bits of its tables, in any browser and whatever the names in it are."""
+import base64
+import csv
+import html
+import json
+import random
+import re
+import shutil
+import struct
+import sys
+import unittest
+import zlib
+
+from vbar_program import SKIP, SOURCE, fly, main, scratch, vbar
+
+sys.path.insert(0, str(SOURCE / "tests" / "integration" / "view"))
+import browser  # noqa: E402
+
+HOSTILE = """</script><b onmouseover='alert(1)'>"&amp; \u2028<!--"""
+
+
+def runs_of(page):
+    """The runs of a page, by its text alone."""
+    text = page.read_text(encoding="utf-8")
+    blocks = re.findall(r'<script type="application/json" id="runs">(.*?)</script>', text, re.DOTALL)
+    assert len(blocks) == 1, len(blocks)
+    return json.loads(blocks[0])
+
+
+def tables_of(run):
+    """{file: {column: cells}} as the page has them."""
+    tables = []
+    for table in run["tables"]:
+        data, offset, columns = zlib.decompress(base64.b64decode(table["data"])), 0, []
+        tables.append(columns)
+        for column in table["columns"]:
+            if "same" in column:
+                cells = tables[column["same"][0]][column["same"][1]][1]
+            else:
+                cells = data[offset:offset + column["bytes"]].decode().split("\n")[:-1]
+                offset += column["bytes"]
+            columns.append((column["name"], cells))
+        assert offset == len(data)
+    return {table["file"]: dict(columns) for table, columns in zip(run["tables"], tables)}
+
+
+def file_of(path):
+    """{column: cells} of a CSV file."""
+    rows = list(csv.reader(path.open(newline="")))
+    return {name: [row[k] for row in rows[1:]] for k, name in enumerate(rows[0])}
+
+
+def bits(cells):
+    return [struct.pack("<d", float(cell)) if cell else None for cell in cells]
+
+
+def need_page(folder):
+    """Skips the class where vbar was built without the page, with the sentence of vbar about that."""
+    result = vbar("view", folder)
+    if result.returncode == 2 and "without the page" in result.stderr:
+        print(result.stderr)
+        sys.exit(SKIP)
+    assert result.returncode == 0, result.stderr
+
+
+class View(unittest.TestCase):
+    """A run of a quarter of an hour with GNSS, estimates that begin late and burns."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = scratch()
+        cls.folder = cls.scratch.__enter__()
+        cls.run = cls.folder / "run"
+        fly(cls.run, "mission.duration_h=0.35", mission=SOURCE / "missions" / "experiment3.toml")
+        need_page(cls.run)
+        cls.page = cls.run / "view.html"
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.scratch.__exit__(None, None, None)
+
+    def test_a_run_leaves_the_page(self):
+        written_by_run = self.page.read_bytes()
+        vbar("view", self.run, "--out", self.folder / "again.html")
+        self.assertEqual(tables_of(runs_of(self.page)[0]), tables_of(runs_of(self.folder / "again.html")[0]))
+        self.assertLess(len(written_by_run), 3e6)
+
+    def test_the_page_has_every_cell_of_every_table(self):
+        tables = tables_of(runs_of(self.page)[0])
+        files = sorted(path.name for path in self.run.glob("*.csv") if path.read_text().count("\n") > 1)
+        self.assertIn("truth.csv", files)
+        self.assertEqual(sorted(name for name in tables if name), files)
+        for name in files:
+            self.assertEqual(tables[name], file_of(self.run / name), name)
+
+    def test_the_page_loads_nothing(self):
+        text = self.page.read_text(encoding="utf-8")
+        self.assertIn("default-src 'none'", text)
+        head = text[:text.index('id="bundle"')]
+        self.assertNotRegex(head.split("<!-- This page contains")[0], r"(src|href)=")
+
+    def test_hostile_names_stay_text(self):
+        run = self.folder / "hostile"
+        shutil.copytree(self.run, run)
+        summary = json.loads((run / "summary.json").read_text())
+        summary["mission"] = HOSTILE * 100
+        (run / "summary.json").write_text(json.dumps(summary))
+        names = self.folder / ("<b>" + "&'" + "x" * 100)
+        run.rename(names)
+        result = vbar("view", names)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        text = (names / "view.html").read_text(encoding="utf-8")
+        self.assertEqual(runs_of(names / "view.html")[0]["summary"]["mission"], HOSTILE * 100)
+        self.assertEqual(html.unescape(re.search("<title>(.*?)</title>", text, re.DOTALL)[1]), names.name)
+        self.assertNotIn("<b", text[text.index("<body"):text.index('id="bundle"')] + re.search("<title>(.*?)</title>", text)[1])
+        self.assertNotIn("onmouseover='alert", text.replace(json.dumps(HOSTILE).replace("<", "\\u003c")[1:-1], ""))
+
+    def test_two_runs(self):
+        result = vbar("view", self.run, self.run, "--out", self.folder / "both.html")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(len(runs_of(self.folder / "both.html")), 2)
+
+    def test_a_run_whose_mission_is_not_read_is_shown_without_shapes(self):
+        run = self.folder / "without"
+        shutil.copytree(self.run, run)
+        (run / "mission.toml").write_text("[mission]\nnaem = 1\n")
+        result = vbar("view", run)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("naem", result.stderr)
+        page = runs_of(run / "view.html")[0]
+        self.assertIn("naem", page["note"])
+        self.assertIsNone(page["scene"])
+
+    def test_no_run(self):
+        result = vbar("view", self.folder)
+        self.assertNotEqual(result.returncode, 0)
+        self.assertEqual(result.stderr.count("\n"), 1)
+
+
+class ViewInBrowser(unittest.TestCase):
+    """The page in Chromium (Debian's package chromium); skipped where there is none."""
+
+    @classmethod
+    def setUpClass(cls):
+        if not browser.program():
+            print(f"none of {', '.join(browser.PROGRAMS)} is installed")
+            sys.exit(SKIP)
+        cls.scratch = scratch()
+        cls.folder = cls.scratch.__enter__()
+        cls.run = cls.folder / "run"
+        fly(cls.run, "mission.duration_h=0.35", mission=SOURCE / "missions" / "experiment3.toml")
+        need_page(cls.run)
+        cls.address = (cls.run / "view.html").as_uri()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.scratch.__exit__(None, None, None)
+
+    def test_values_at_random_instants(self):
+        with browser.browser() as page:
+            page.show()
+            page.open(self.address)
+            truth, estimate = file_of(self.run / "truth.csv"), file_of(self.run / "estimate.csv")
+            times = [float(cell) for cell in truth["time_s"]]
+            draw = random.Random(1)
+            for _ in range(100):
+                t = draw.uniform(times[0], times[-1])
+                row = max(k for k, time in enumerate(times) if time <= t)
+                shown = page.evaluate(f"(vbarView.cursor.set({t!r}), vbarView.valuesAt(vbarView.cursor.t).rows)")
+                for name, column in (("R", "r_m"), ("T", "t_m"), ("N", "n_m")):
+                    values = next(value for value in shown if value["name"] == name)
+                    self.assertEqual(bits([truth[f"relative_position_rtn_{column}"][row]]), bits([repr(values["truth"])]))
+                    cell = estimate[f"relative_position_rtn_{column}"][row]
+                    self.assertEqual(bits([cell]), bits([repr(values["estimate"]) if values["estimate"] is not None else ""]))
+            self.assertEqual(page.errors, [])
+            self.assertEqual([load for load in page.loads if not load.startswith(("file:", "data:", "blob:"))], [])
+
+    def test_every_tab_has_curves_with_as_many_points_as_the_table(self):
+        with browser.browser() as page:
+            page.show()
+            page.open(self.address + "#t=39.2h&tab=navigation")
+            self.assertAlmostEqual(page.evaluate("vbarView.cursor.t"), 39.2 * 3600, 3)
+            rows = len(file_of(self.run / "truth.csv")["time_s"])
+            for tab in ("relative", "navigation", "roe", "burns"):
+                page.evaluate(f"vbarView.choose('{tab}')")
+                self.assertGreater(page.evaluate("document.querySelectorAll('.uplot canvas').length"), 0, tab)
+            page.evaluate("vbarView.choose('columns')")
+            self.assertEqual(page.evaluate("vbarView.runs[0].table('truth').time.length"), rows)
+            columns = [f"{path.stem}.{name}" for path in self.run.glob("*.csv") for name in file_of(path)
+                       if path.read_text().count("\n") > 1]
+            listed = page.evaluate("[...document.querySelectorAll('.columns label')].map((label) => label.innerText)")
+            self.assertEqual(sorted(column for column in columns if column not in listed), [])
+            self.assertEqual(page.errors, [])
+
+    def test_scene_is_drawn(self):
+        with browser.browser() as page:
+            page.show(dark=True)
+            page.open(self.address)
+            colours = page.evaluate("""(() => {
+              const from = document.querySelector('.scene canvas'), to = document.createElement('canvas');
+              Object.assign(to, {width: from.width, height: from.height});
+              const g = to.getContext('2d');
+              g.drawImage(from, 0, 0);
+              const pixels = new Uint32Array(g.getImageData(0, 0, to.width, to.height).data.buffer);
+              return new Set(pixels).size; })()""")
+            self.assertGreater(colours, 20)
+            # Position and attitude by one frame: the scene's target is as far away as the table says.
+            self.assertAlmostEqual(page.evaluate("vbarView.scene.target.position.length()"),
+                                   page.evaluate("vbarView.valuesAt(vbarView.cursor.t).rows[0].truth"), 6)
+
+    def test_without_webgl_plots_and_numbers_stand(self):
+        with browser.browser("--disable-gpu", "--disable-3d-apis") as page:
+            page.show()
+            page.open(self.address)
+            self.assertIn("WebGL", page.evaluate("document.querySelector('.scene').innerText"))
+            self.assertGreater(page.evaluate("document.querySelectorAll('.uplot').length"), 3)
+
+    def test_keys(self):
+        with browser.browser() as page:
+            page.show()
+            page.open(self.address)
+            for key, change in (("ArrowRight", 10), ("ArrowLeft", -10)):
+                before = page.evaluate("vbarView.cursor.t")
+                page.call("Input.dispatchKeyEvent", type="keyDown", key=key)
+                self.assertAlmostEqual(page.evaluate("vbarView.cursor.t") - before, change, 6)
+
+
+if __name__ == "__main__":
+    main()
