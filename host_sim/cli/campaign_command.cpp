@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "host_sim/campaign/engine.h"
+#include "host_sim/campaign/exchange.h"
 #include "host_sim/campaign/run_campaign.h"
 #include "host_sim/campaign/status.h"
 #include "host_sim/campaign_report/page.h"
@@ -23,7 +24,8 @@ constexpr const char* kTrustHelp =
     "fly a folder whose program is not this one, or whose mission names a library, a device or a testbed";
 constexpr const char* kFolderHelp = "folder of the campaign";
 constexpr const char* kExitCodes =
-    "Exit codes of run: 0 every case has its result and the requirement is met, 1 it is not met, cases were lost, or "
+    "Exit codes of run: 0 every case has its result and every requirement is met, 1 one is not met, cases were lost, "
+    "or "
     "no\n"
     "more can be flown here, 2 refused (nothing was flown), 75 cases are left to fly: run the folder again.";
 
@@ -34,6 +36,8 @@ void add_run(CLI::App& campaign, int& exit_code, const campaign::CommandLine& co
   run->footer(kExitCodes);
   run->add_option("campaign", request->campaign, "campaign file (TOML), or the folder of a campaign")->required();
   run->add_option("--out", request->out, "folder of a new campaign; runs/campaign-NAME unless given");
+  run->add_option("--seeds-from", request->seeds_from,
+                  "commit of which seeds = { count = N, from = \"commit\" } are drawn; that of vbar unless given");
   run->add_option("--jobs", request->jobs, "flights at once; local: as many as processors, else 1 for each worker")
       ->check(integer_from(1));
   run->add_option("--engine", request->engine, "where the workers run: local, slurm or command");
@@ -52,7 +56,7 @@ void add_run(CLI::App& campaign, int& exit_code, const campaign::CommandLine& co
       throw Refused("--submit and --engine command need each other");
     if (request->engine == "local" && request->workers > 0) throw Refused("--workers: has no effect here; use --jobs");
     request->engine_options = *sbatch + *submit;
-    request->vbar_version = build_version();
+    request->build = {build_version(), kBuildCommit};
     request->stop_requested = stop_requested;
     request->command_line = command_line;
     catch_stop_signals();
@@ -65,7 +69,8 @@ int status(const std::filesystem::path& root, bool watch) {
   catch_stop_signals();
   for (;;) {
     const campaign::Standing standing = campaign::read_standing(folder);
-    const std::string text = campaign::status_text(standing, campaign::jobs_of_campaign(folder));
+    const std::string text = campaign::status_text(standing, campaign::judge_requirements(folder, standing),
+                                                   campaign::jobs_of_campaign(folder));
     fmt::print("{}{}", watch && isatty(STDOUT_FILENO) == 1 ? "\x1b[H\x1b[J" : "", text);
     std::fflush(stdout);
     if (!watch || standing.left_to_fly(false).empty()) return kDone;
@@ -89,9 +94,9 @@ int report(const std::filesystem::path& root) {
   const campaign::Folder folder(root);
   const campaign::Standing standing = campaign::read_standing(folder);
   campaign::write_results(folder, standing);
-  const std::filesystem::path page = campaign::write_page(folder.root());
-  fmt::print("{}results  {}\npage     {}\n", campaign::status_text(standing, {}), folder.results().string(),
-             page.string());
+  const campaign::WrittenPage written = campaign::write_page(folder.root());
+  fmt::print("{}results  {}\npage     {}\n", campaign::status_text(standing, written.requirements, {}),
+             folder.results().string(), written.page.string());
   return standing.results.conflicts.empty() ? kDone : kFailed;
 }
 
@@ -136,6 +141,33 @@ void add_rerun(CLI::App& campaign, int& exit_code) {
   });
 }
 
+void add_export(CLI::App& campaign) {
+  const auto folder = std::make_shared<std::filesystem::path>(), to = std::make_shared<std::filesystem::path>();
+  CLI::App* command = campaign.add_subcommand(
+      "export", "pack the cases that are left to fly, with program, data and mission, for another computer");
+  command->footer(
+      "There `./fly.sh` flies them with the program in it, `./fly.sh BUNDLE/vbar` with the libraries of a\n"
+      "portable bundle, and packs results.tar.gz for vbar campaign import.");
+  command->add_option("folder", *folder, kFolderHelp)->required();
+  command->add_option("--to", *to, "archive (.tar.gz, .tgz) or folder; NAME-cases.tar.gz unless given");
+  command->callback([=] {
+    const campaign::Exported done = campaign::export_cases(campaign::Folder(*folder), *to);
+    fmt::print("cases    {}\nexport   {}\n", done.cases, done.to.string());
+  });
+}
+
+void add_import(CLI::App& campaign, int& exit_code) {
+  const auto folder = std::make_shared<std::filesystem::path>(), from = std::make_shared<std::filesystem::path>();
+  CLI::App* command = campaign.add_subcommand("import", "take results of exported cases, of the same program and data");
+  command->add_option("folder", *folder, kFolderHelp)->required();
+  command->add_option("results", *from, "results.tar.gz, or the exported folder that was flown")->required();
+  command->callback([=, &exit_code] {
+    const campaign::Imported done = campaign::import_results(campaign::Folder(*folder), *from);
+    fmt::print("results  {} taken, {} were known, {} left to fly\n", done.taken, done.known, done.left);
+    exit_code = report(*folder);
+  });
+}
+
 void add_worker(CLI::App& campaign, int& exit_code, const campaign::CommandLine& command_line) {
   const auto request = std::make_shared<campaign::WorkerRequest>();
   CLI::App* command =
@@ -163,6 +195,8 @@ void add_campaign_command(CLI::App& program, int& exit_code, const campaign::Com
   add_status(*campaign, exit_code);
   add_report(*campaign, exit_code);
   add_rerun(*campaign, exit_code);
+  add_export(*campaign);
+  add_import(*campaign, exit_code);
   add_worker(*campaign, exit_code, command_line);
 }
 
