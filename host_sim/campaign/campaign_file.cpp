@@ -11,11 +11,14 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "host_sim/files/data_stream.h"
 #include "host_sim/mission/mission_error.h"
 #include "host_sim/mission/read_sections.h"
 #include "host_sim/mission/table_reader.h"
 #include "host_sim/mission/toml_file.h"
 #include "host_sim/report/csv_table.h"
+#include "host_sim/report/verdict.h"
+#include "host_sim/simulation/exit_codes.h"
 
 namespace vbar::campaign {
 
@@ -130,7 +133,8 @@ using mission::TableReader;
 constexpr std::size_t kMaxSeeds = 1'000'000;
 constexpr double kMaxHours = 1e6;
 
-constexpr const char* kSeedsRule = "\"FIRST..LAST\" or an array of different integers from 0 on, at most a million";
+constexpr const char* kSeedsRule =
+    "\"FIRST..LAST\", an array of different integers from 0 on, or { count = N, from = \"commit\" }; at most a million";
 
 std::vector<std::uint64_t> seeds_of_range(const TableReader& section, const std::string& text) {
   const std::size_t dots = text.find("..");
@@ -146,6 +150,16 @@ std::vector<std::uint64_t> seeds_of_range(const TableReader& section, const std:
   std::vector<std::uint64_t> seeds;
   for (std::uint64_t seed = first; seed <= last; ++seed) seeds.push_back(seed);
   return seeds;
+}
+
+SeedDraw read_seed_draw(const TableReader& section) {
+  const TableReader draw = section.table("seeds");
+  SeedDraw read;
+  read.count = static_cast<std::size_t>(draw.integer("count", 1, kMaxSeeds));
+  static_cast<void>(draw.choice("from", std::array{std::pair{std::string_view("commit"), true}}));
+  read.where = draw.where("from");
+  draw.finish();
+  return read;
 }
 
 std::vector<std::uint64_t> read_seeds(const TableReader& section, const toml::table& table) {
@@ -180,7 +194,10 @@ void read_general(const TableReader& section, const toml::table& table, Campaign
   campaign.name = section.name("name", campaign.file.stem().string());
   campaign.description = section.text("description", "");
   campaign.mission = section.text("mission");
-  campaign.seeds = read_seeds(section, table);
+  if (table["seeds"].is_table())
+    campaign.seed_draw = read_seed_draw(section);
+  else
+    campaign.seeds = read_seeds(section, table);
   campaign.seed = static_cast<std::uint64_t>(section.integer("seed", 0, std::numeric_limits<std::int64_t>::max(), 1));
   campaign.set = section.texts("set");
   campaign.keep = read_keep(section);
@@ -237,6 +254,79 @@ Sweep read_sweep(const TableReader& section, const toml::table& table, const std
   return sweep;
 }
 
+constexpr double kLargest = 1e15;  // of a figure
+constexpr std::array kFileStatistics{std::pair{std::string_view("median"), campaign_report::Statistic::kMedian},
+                                     std::pair{std::string_view("mean"), campaign_report::Statistic::kMean},
+                                     std::pair{std::string_view("worst"), campaign_report::Statistic::kWorst},
+                                     std::pair{std::string_view("percentile"), campaign_report::Statistic::kPercentile},
+                                     std::pair{std::string_view("share"), campaign_report::Statistic::kShare}};
+
+/// A key that belongs to other statistics is refused by name, as the requirement would not mean what it says.
+void refuse_key(const TableReader& section, const char* key, const char* statistics) {
+  if (section.has(key))
+    section.refuse(key, fmt::format("this key with statistic = \"{}\"", section.text("statistic")),
+                   fmt::format("{} with statistic = {} only", key, statistics));
+}
+
+std::vector<std::string> read_verdicts(const TableReader& section) {
+  std::vector<std::string_view> words;
+  for (int k = 0; k < static_cast<int>(report::Outcome::kIncomplete); ++k)
+    words.push_back(report::word_of(static_cast<report::Outcome>(k)));
+  const std::string rule = fmt::format("{}, or an array of different ones", mission::listing_of(words));
+  std::vector<std::string> verdicts =
+      section.is_array("verdict") ? section.texts("verdict") : std::vector{section.text("verdict")};
+  const bool are_known = std::ranges::all_of(
+      verdicts, [&](const std::string& one) { return std::ranges::find(words, one) != words.end(); });
+  if (verdicts.empty() || !are_known || std::set(verdicts.begin(), verdicts.end()).size() != verdicts.size())
+    section.refuse_value("verdict", rule);
+  return verdicts;
+}
+
+void read_requirement_limit(const TableReader& section, mission::Range range, Requirement& requirement) {
+  if (section.has("most") == section.has("least"))
+    section.refuse("", section.has("most") ? "both most and least" : "neither most nor least", "one of them");
+  if (section.has("most"))
+    requirement.most = section.number("most", range);
+  else
+    requirement.least = section.number("least", range);
+}
+
+/// An element of [[require]], or the table [require] with pass_rate_at_least.
+Requirement read_requirement(const TableReader& section) {
+  using campaign_report::Statistic;
+  constexpr double kDefaultConfidence = 0.95;
+  const mission::Range confidences = from_to(0.5, 0.9999);
+  Requirement requirement;
+  if (section.has("pass_rate_at_least")) {
+    requirement = Requirement::pass_rate(section.number("pass_rate_at_least", above_to(0.0, 1.0)),
+                                         section.number("confidence", confidences, kDefaultConfidence));
+  } else {
+    requirement.statistic = section.choice<Statistic>("statistic", kFileStatistics);
+    const bool is_share = requirement.statistic == Statistic::kShare;
+    const bool is_percentile = requirement.statistic == Statistic::kPercentile;
+    if (is_share) {
+      refuse_key(section, "key", "\"median\", \"mean\", \"worst\" or \"percentile\"");
+      requirement.verdicts = read_verdicts(section);
+    } else {
+      refuse_key(section, "verdict", "\"share\"");
+      requirement.key = section.text("key");
+      if (requirement.key.empty()) section.refuse_value("key", "a number of summary.json by its path");
+    }
+    if (is_percentile)
+      requirement.percentile = section.number("percentile", above_to(0.0, 99.9999));
+    else
+      refuse_key(section, "percentile", "\"percentile\"");
+    if (!is_share && !is_percentile) refuse_key(section, "confidence", "\"percentile\" or \"share\"");
+    read_requirement_limit(section, is_share ? from_to(0.0, 1.0) : from_to(-kLargest, kLargest), requirement);
+    if (is_share || section.has("confidence"))
+      requirement.confidence = section.number("confidence", confidences, kDefaultConfidence);
+    requirement.allow_missing = static_cast<std::size_t>(section.integer("allow_missing", 0, kMaxSeeds, 0));
+  }
+  requirement.paper = section.text("paper", "");
+  section.finish();
+  return requirement;
+}
+
 void refuse_repeated_keys(const CampaignFile& campaign) {
   std::set<std::string> seen;
   const auto once = [&](const std::string& key) {
@@ -291,11 +381,11 @@ CampaignFile parse_campaign(std::string_view text, const std::filesystem::path& 
     campaign.dispersions.push_back(read_dispersion(section, raw));
   });
   for (const TableReader& section : document.tables("pass")) campaign.passes.push_back(mission::read_limit(section));
-  if (document.has("require")) {
-    const TableReader section = document.table("require");
-    campaign.require = Requirement{section.number("pass_rate_at_least", above_to(0.0, 1.0)),
-                                   section.number("confidence", from_to(0.5, 0.9999), 0.95)};
-    section.finish();
+  if (table["require"].is_table()) {
+    campaign.requirements.push_back(read_requirement(document.table("require")));
+  } else {
+    for (const TableReader& section : document.tables("require"))
+      campaign.requirements.push_back(read_requirement(section));
   }
   document.finish();
   refuse_repeated_keys(campaign);
@@ -304,6 +394,46 @@ CampaignFile parse_campaign(std::string_view text, const std::filesystem::path& 
 
 CampaignFile read_campaign_file(const std::filesystem::path& file) {
   return parse_campaign(mission::read_text_file(file, "a campaign file (TOML)"), file);
+}
+
+std::string seed_origin(std::string_view commit) {
+  constexpr std::size_t kDigits = 12, kMinDigits = 7, kMaxDigits = 64;
+  const bool is_changed = commit.ends_with('+');
+  const std::string_view digits = commit.substr(0, commit.size() - (is_changed ? 1 : 0));
+  if (digits.size() < kMinDigits || digits.size() > kMaxDigits) return {};
+  std::string origin;
+  for (const char c : digits.substr(0, kDigits)) origin += static_cast<char>(c >= 'A' && c <= 'F' ? c | 0x20 : c);
+  if (digits.find_first_not_of("0123456789abcdefABCDEF") != std::string_view::npos) return {};
+  return origin + (is_changed ? "+" : "");
+}
+
+void draw_seeds(CampaignFile& campaign, const std::string& commit, const std::string& seeds_from) {
+  if (!campaign.seed_draw) {
+    if (!seeds_from.empty())
+      throw app::Refused(
+          fmt::format("--seeds-from: found {}, although {} states its seeds; accepted: with seeds = {{ count = N, from "
+                      "= \"commit\" }}",
+                      seeds_from, campaign.file.string()));
+    return;
+  }
+  campaign.seeds_from = seed_origin(seeds_from.empty() ? commit : seeds_from);
+  if (campaign.seeds_from.empty() && !seeds_from.empty())
+    throw app::Refused(
+        "--seeds-from: found " + seeds_from +
+        "; accepted: 7 to 64 hexadecimal digits of a commit, with a + behind them if files were changed");
+  if (campaign.seeds_from.empty())
+    throw mission::MissionError(campaign.seed_draw->where, "campaign.seeds.from",
+                                "\"commit\" in a program whose commit is " + commit,
+                                "a program built in a git work tree, or --seeds-from HEX");
+  // 32 bits: short enough to type, and two of a million that are equal are drawn again.
+  constexpr std::size_t kHexDigits = 8;
+  std::set<std::uint64_t> drawn;
+  for (std::uint64_t k = 0; drawn.size() < campaign.seed_draw->count; ++k) {
+    const std::string hash = files::sha256_of(fmt::format("{}\n{}\n{}", campaign.seeds_from, campaign.name, k));
+    std::uint64_t seed = 0;
+    std::from_chars(hash.data(), hash.data() + kHexDigits, seed, 16);
+    if (drawn.insert(seed).second) campaign.seeds.push_back(seed);
+  }
 }
 
 }  // namespace vbar::campaign

@@ -11,6 +11,7 @@
 #include <toml++/toml.h>
 
 #include "host_sim/campaign/dispersion.h"
+#include "host_sim/campaign_report/campaign.h"
 #include "host_sim/mission/mission.h"
 
 namespace vbar::campaign {
@@ -32,10 +33,12 @@ struct Sweep {
 
 using PassCriterion = mission::Limit;
 
-/// Requirement on the whole campaign: the lower Clopper-Pearson bound, two-sided, of the pass rate.
-struct Requirement {
-  double pass_rate = 0.0;
-  double confidence = 0.95;
+using Requirement = campaign_report::Requirement;
+
+/// Seeds that are drawn when the campaign is made: seeds = { count = 100, from = "commit" }.
+struct SeedDraw {
+  std::size_t count = 0;
+  std::string where;  ///< "file:line" of the key
 };
 
 /// Selection of the run folders that stay.
@@ -48,10 +51,12 @@ struct Keep {
 struct CampaignFile {
   std::filesystem::path file;
   std::string name, description;
-  std::string mission;  ///< as in the file: a path relative to it, or a name of the catalogue
-  std::vector<std::uint64_t> seeds;
-  std::uint64_t seed = 1;        ///< seed of the draws
-  std::vector<std::string> set;  ///< "path=value", for all cases
+  std::string mission;                ///< as in the file: a path relative to it, or a name of the catalogue
+  std::vector<std::uint64_t> seeds;   ///< empty until they are drawn
+  std::optional<SeedDraw> seed_draw;  ///< none of stated seeds
+  std::string seeds_from;             ///< commit of which the seeds were drawn
+  std::uint64_t seed = 1;             ///< seed of the draws
+  std::vector<std::string> set;       ///< "path=value", for all cases
   Keep keep;
   std::vector<double> samples_h;
   double case_time_limit_s = 0.0;        ///< 0: no limit
@@ -63,7 +68,7 @@ struct CampaignFile {
   std::vector<Sweep> sweeps;
   std::vector<Dispersion> dispersions;
   std::vector<PassCriterion> passes;
-  std::optional<Requirement> require;
+  std::vector<Requirement> requirements;
 
   /// Swept keys, then dispersed ones, in the order of the file.
   [[nodiscard]] std::vector<std::string> swept_keys() const;
@@ -73,6 +78,18 @@ struct CampaignFile {
 /// Throws MissionError that names place, key and what is accepted.
 [[nodiscard]] CampaignFile read_campaign_file(const std::filesystem::path& file);
 [[nodiscard]] CampaignFile parse_campaign(std::string_view text, const std::filesystem::path& file);
+
+// Seeds that were never used before: drawn from the commit of the program and the campaign's name, so that every commit
+// flies others, and the same commit the same ones.
+
+/// Draws the seeds of a campaign that asks for it. `commit`: of the program as `vbar --version` prints it;
+/// `seeds_from`: the commit to draw from instead, 7 to 64 hexadecimal digits of which the first twelve count, with a
+/// "+" behind them for changed files; empty: `commit`. Throws MissionError that names the key if there is none,
+/// app::Refused for an invalid `seeds_from` or one without effect.
+void draw_seeds(CampaignFile& campaign, const std::string& commit, const std::string& seeds_from);
+
+/// Returns what seeds are drawn from: the twelve digits, with the mark of changed files; empty if `commit` is not one.
+[[nodiscard]] std::string seed_origin(std::string_view commit);
 
 // A sweep of a CSV table: a head of mission keys, then a row of values for each sweep point.
 

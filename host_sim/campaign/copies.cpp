@@ -26,6 +26,11 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kDigestDigits = 64;
 
+bool is_inside(const fs::path& file, const fs::path& parent) {
+  const fs::path relative = file.lexically_relative(parent);
+  return !relative.empty() && *relative.begin() != "..";
+}
+
 void copy_one(const fs::path& from, const fs::path& to) {
   try {
     fs::create_directories(to.parent_path());
@@ -55,7 +60,8 @@ std::string checksums_of(const Folder& folder) {
   return text;
 }
 
-/// Reads the list of checksums: files, each with its SHA-256.
+}  // namespace
+
 std::vector<std::pair<fs::path, std::string>> listed_copies(const Folder& folder) {
   std::vector<std::pair<fs::path, std::string>> listed;
   for (const std::string& line : report::read_lines(folder.checksums())) {
@@ -66,7 +72,11 @@ std::vector<std::pair<fs::path, std::string>> listed_copies(const Folder& folder
   return listed;
 }
 
-}  // namespace
+std::string kind_of_copy(const Folder& folder, const fs::path& file) {
+  if (file == folder.program()) return "program";
+  if (is_inside(file, folder.data())) return "data";
+  return is_inside(file, folder.mission_files()) ? "mission" : "flight image";
+}
 
 fs::path copy_of_mission(const fs::path& mission) {
   const Folder relative{fs::path()};
@@ -100,9 +110,6 @@ void check_copies(const Folder& folder) {
 }
 
 bool flies_as_the_copy(const Folder& folder) {
-  const auto is_inside = [](const fs::path& file, const fs::path& parent) {
-    return *file.lexically_relative(parent).begin() != "..";
-  };
   for (const auto& [file, listed] : listed_copies(folder)) {
     if (file == folder.program()) {
       if (files::sha256_of_file(files::own_program_bytes()) != listed) return false;
@@ -119,11 +126,6 @@ constexpr const char* kOnlyTrusted = "which is used only with --trust";
 
 [[noreturn]] void refuse(const fs::path& where, const std::string& what) {
   throw app::Refused(fmt::format("{}: {}, {}", where.string(), what, kOnlyTrusted));
-}
-
-bool is_inside(const fs::path& file, const fs::path& parent) {
-  const fs::path relative = file.lexically_relative(parent);
-  return !relative.empty() && *relative.begin() != "..";
 }
 
 /// Every file of the copies that is no data and no mission, whether or not it is listed with a checksum.

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "host_sim/campaign/plan.h"
 
@@ -24,6 +26,12 @@ void make_copies(const Folder& folder, const UsedFiles& files, const std::string
 /// Returns the place of the mission's copy, relative to the campaign's folder. It stands at its own absolute path below
 /// bin/files, as do all files that it names relative to itself.
 [[nodiscard]] std::filesystem::path copy_of_mission(const std::filesystem::path& mission);
+
+/// Reads the list of checksums: files, each with its SHA-256. Throws std::runtime_error that names the list.
+[[nodiscard]] std::vector<std::pair<std::filesystem::path, std::string>> listed_copies(const Folder& folder);
+
+/// "program", "data", "mission" or "flight image": what a copy is, for messages.
+[[nodiscard]] std::string kind_of_copy(const Folder& folder, const std::filesystem::path& file);
 
 /// Throws std::runtime_error that names the first file that is missing or differs.
 void check_copies(const Folder& folder);

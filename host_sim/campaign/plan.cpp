@@ -7,11 +7,11 @@
 #include <system_error>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "host_sim/campaign/campaign_file.h"
 #include "host_sim/campaign/case_records.h"
 #include "host_sim/campaign/copies.h"
+#include "host_sim/campaign_report/requirement.h"
 #include "host_sim/files/data_stream.h"
 #include "host_sim/files/output_file.h"
 #include "host_sim/installation/sensor_kinds.h"
@@ -19,6 +19,7 @@
 #include "host_sim/mission/load.h"
 #include "host_sim/mission/mission_document.h"
 #include "host_sim/mission/mission_error.h"
+#include "host_sim/report/json_file.h"
 #include "host_sim/report/run_folder.h"
 #include "host_sim/simulation/exit_codes.h"
 #include "host_sim/simulation/flight_computer.h"
@@ -55,7 +56,7 @@ std::vector<std::filesystem::path> record_files(const std::filesystem::path& fol
 
 namespace {
 
-constexpr int kFormat = 1;
+constexpr std::size_t kFormat = 1;
 constexpr std::array<std::pair<std::string_view, Keep::Kind>, 4> kKeepKinds{{{"summary", Keep::Kind::kSummary},
                                                                              {"failed", Keep::Kind::kFailed},
                                                                              {"worst", Keep::Kind::kWorst},
@@ -69,52 +70,46 @@ Json json_of(const PassCriterion& pass) {
   return {{"key", pass.key}, {"most", json_of(pass.most)}, {"least", json_of(pass.least)}};
 }
 
-Json json_of(const std::optional<Requirement>& require) {
-  if (!require) return nullptr;
-  return {{"pass_rate_at_least", require->pass_rate}, {"confidence", require->confidence}};
-}
-
 Json json_of(const Keep& keep) {
   for (const auto& [name, kind] : kKeepKinds)
     if (kind == keep.kind) return {{"runs", name}, {"worst", keep.worst}};
   return nullptr;
 }
 
-std::optional<double> number(const Json& json) {
-  return json.is_null() ? std::nullopt : std::optional(json.get<double>());
-}
-
-Keep keep_of(const Json& json) {
+Keep keep_of(const report::JsonObject& object) {
+  const std::string runs = object.text("runs");
   for (const auto& [name, kind] : kKeepKinds)
-    if (json.at("runs") == name) return {kind, json.at("worst").get<std::size_t>()};
-  throw std::runtime_error("an unknown value of keep");
+    if (runs == name) return {kind, object.count("worst")};
+  object.fail("runs", fmt::format("found \"{}\"; accepted: summary, failed, worst or all", runs));
 }
 
-Plan plan_of_json(const Json& json) {
-  if (json.at("format") != kFormat) throw std::runtime_error(fmt::format("format {} is expected", kFormat));
+Plan plan_of_json(const report::JsonObject& object) {
+  if (const auto format = object.count("format"); format != kFormat)
+    object.fail("format", fmt::format("found {}; accepted: {}", format, kFormat));
   Plan plan;
-  json.at("name").get_to(plan.name);
-  json.at("description").get_to(plan.description);
-  json.at("mission").get_to(plan.mission);
-  json.at("vbar_version").get_to(plan.vbar_version);
-  json.at("program_sha256").get_to(plan.program_sha256);
-  json.at("cases").get_to(plan.cases);
-  json.at("cases_sha256").get_to(plan.cases_sha256);
-  json.at("keys").get_to(plan.keys);
-  json.at("swept").get_to(plan.swept);
-  for (const Json& pass : json.at("pass"))
-    plan.passes.push_back({pass.at("key").get<std::string>(), number(pass.at("most")), number(pass.at("least"))});
-  json.at("samples_h").get_to(plan.samples_h);
-  if (const Json& require = json.at("require"); !require.is_null())
-    plan.require = Requirement{require.at("pass_rate_at_least").get<double>(), require.at("confidence").get<double>()};
-  json.at("independent").get_to(plan.independent);
-  json.at("mission_file").get_to(plan.mission_file);
-  json.at("set").get_to(plan.set);
-  plan.keep = keep_of(json.at("keep"));
-  json.at("case_time_limit_s").get_to(plan.case_time_limit_s);
-  json.at("expected_case_s").get_to(plan.expected_case_s);
-  json.at("retries").get_to(plan.retries);
-  json.at("stop_after_failures").get_to(plan.stop_after_failures);
+  plan.name = object.text("name");
+  plan.description = object.text("description");
+  plan.mission = object.text("mission");
+  plan.vbar_version = object.text("vbar_version");
+  plan.commit = object.text_or("commit", "");
+  plan.program_sha256 = object.text("program_sha256");
+  plan.seeds_from = object.text_or("seeds_from", "");
+  plan.cases = object.count("cases");
+  plan.cases_sha256 = object.text("cases_sha256");
+  plan.keys = object.texts("keys");
+  plan.swept = object.texts("swept");
+  for (const report::JsonObject& pass : object.objects("pass"))
+    plan.passes.push_back({pass.text("key"), pass.number_or_null("most"), pass.number_or_null("least")});
+  plan.samples_h = object.get<std::vector<double>>("samples_h", "a list of numbers");
+  plan.requirements = campaign_report::requirements_of(object);
+  plan.independent = object.flag("independent");
+  plan.mission_file = object.text("mission_file");
+  plan.set = object.texts("set");
+  plan.keep = keep_of(object.object("keep"));
+  plan.case_time_limit_s = object.number("case_time_limit_s");
+  plan.expected_case_s = object.number("expected_case_s");
+  plan.retries = static_cast<std::int64_t>(object.count("retries"));
+  plan.stop_after_failures = static_cast<std::int64_t>(object.count("stop_after_failures"));
   return plan;
 }
 
@@ -128,7 +123,8 @@ Plan plan_of(const CampaignFile& campaign) {
   plan.swept = campaign.swept_keys();
   plan.passes = campaign.passes;
   plan.samples_h = campaign.samples_h;
-  plan.require = campaign.require;
+  plan.requirements = campaign.requirements;
+  plan.seeds_from = campaign.seeds_from;
   plan.independent = campaign.sampling == DrawSource::Sampling::kIndependent;
   plan.set = campaign.set;
   plan.keep = campaign.keep;
@@ -142,19 +138,23 @@ Plan plan_of(const CampaignFile& campaign) {
 std::string plan_json(const Plan& plan) {
   Json passes = Json::array();
   for (const PassCriterion& pass : plan.passes) passes.push_back(json_of(pass));
+  Json requirements = Json::array();
+  for (const Requirement& one : plan.requirements) requirements.push_back(campaign_report::json_of(one));
   const Json json{{"format", kFormat},
                   {"name", plan.name},
                   {"description", plan.description},
                   {"mission", plan.mission},
                   {"vbar_version", plan.vbar_version},
+                  {"commit", plan.commit},
                   {"program_sha256", plan.program_sha256},
+                  {"seeds_from", plan.seeds_from},
                   {"cases", plan.cases},
                   {"cases_sha256", plan.cases_sha256},
                   {"keys", plan.keys},
                   {"swept", plan.swept},
                   {"pass", passes},
                   {"samples_h", plan.samples_h},
-                  {"require", json_of(plan.require)},
+                  {"require", requirements},
                   {"independent", plan.independent},
                   {"mission_file", plan.mission_file},
                   {"set", plan.set},
@@ -167,12 +167,8 @@ std::string plan_json(const Plan& plan) {
 }
 
 Plan read_plan(const std::filesystem::path& file) {
-  const std::string text = files::read_text_file(file);
-  try {
-    return plan_of_json(Json::parse(text));
-  } catch (const std::exception& error) {
-    throw std::runtime_error(fmt::format("{}: not the plan of a campaign: {}", file.string(), error.what()));
-  }
+  const Json json = report::read_json_file(file);
+  return plan_of_json({json, file.string()});
 }
 
 std::string identity_of(const Plan& plan, const Case& one) {
@@ -292,7 +288,7 @@ void refuse_used_folder(const Folder& folder) {
 
 }  // namespace
 
-void prepare(const CampaignFile& campaign, const Folder& folder, const std::string& vbar_version, bool quiet) {
+void prepare(const CampaignFile& campaign, const Folder& folder, const Build& build, bool quiet) {
   folder.refuse_links();
   refuse_used_folder(folder);
   Plan plan = plan_of(campaign);
@@ -301,7 +297,8 @@ void prepare(const CampaignFile& campaign, const Folder& folder, const std::stri
   const UsedFiles used = load_all(plan, cases, mission, quiet);
   plan.mission = mission.stem().string();
   plan.mission_file = copy_of_mission(mission).string();
-  plan.vbar_version = vbar_version;
+  plan.vbar_version = build.version;
+  plan.commit = build.commit;
   plan.cases = cases.size();
 
   fs::create_directories(folder.root());

@@ -2,7 +2,6 @@
 // The files of a campaign's folder.
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,13 +52,14 @@ class Folder {
 // campaign.json: what the workers and the report need of a campaign, fixed when it is made.
 
 struct Plan {
-  std::string name, description, mission, vbar_version, program_sha256;
+  std::string name, description, mission, vbar_version, commit, program_sha256;
+  std::string seeds_from;  ///< commit of which the seeds were drawn; empty if they were stated
   std::size_t cases = 0;
   std::string cases_sha256;  ///< hash of cases.csv
   std::vector<std::string> keys, swept;
   std::vector<PassCriterion> passes;
   std::vector<double> samples_h;
-  std::optional<Requirement> require;
+  std::vector<Requirement> requirements;
   bool independent = true;  ///< the draws are: false of Latin hypercube sampling
 
   std::string mission_file;  ///< path of the copy, relative to the campaign's folder
@@ -73,7 +73,7 @@ struct Plan {
 
 [[nodiscard]] std::string plan_json(const Plan& plan);
 
-/// Throws std::runtime_error that names the file.
+/// Throws std::runtime_error that names the file, the line or key and what is accepted.
 [[nodiscard]] Plan read_plan(const std::filesystem::path& file);
 
 /// SHA-256 of a case's overrides: what a result belongs to.
@@ -85,10 +85,15 @@ struct Plan {
 // Makes the folder of a campaign from a campaign file. Every case is loaded first: a campaign of which one case is
 // rejected does not start.
 
+/// Version and commit of this program, as `vbar --version` prints them.
+struct Build {
+  std::string version, commit;
+};
+
 /// Makes `folder`, with a line of progress on a terminal unless `quiet`. Throws app::Refused that names the case, the
 /// key and what is accepted, or that the folder is in use; then nothing was made. Throws std::runtime_error if a file
 /// cannot be written or copied.
-void prepare(const CampaignFile& campaign, const Folder& folder, const std::string& vbar_version, bool quiet);
+void prepare(const CampaignFile& campaign, const Folder& folder, const Build& build, bool quiet);
 
 /// Whether the folder holds the campaign of this file.
 [[nodiscard]] bool holds_same_campaign(const Folder& folder, const std::filesystem::path& file);

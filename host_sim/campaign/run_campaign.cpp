@@ -34,6 +34,17 @@ struct OpenedFolder {
   bool is_new = false;  ///< made by this process
 };
 
+/// Seeds of a campaign that was begun stay as they were drawn.
+void refuse_other_seeds(const RunRequest& request, const Folder& folder) {
+  if (request.seeds_from.empty()) return;
+  const std::string drawn = read_plan(folder.plan()).seeds_from;
+  if (drawn.empty() || seed_origin(request.seeds_from) != drawn)
+    throw Refused(fmt::format("--seeds-from: found {}; accepted: {}", request.seeds_from,
+                              drawn.empty() ? "nothing, as " + folder.root().string() + " has stated seeds"
+                                            : drawn + ", of which the seeds of " + folder.root().string() +
+                                                  " were drawn, or another folder (--out)"));
+}
+
 /// The folder of the request; made if it is given a campaign file and there is none yet.
 OpenedFolder open_folder(const RunRequest& request) {
   std::error_code error;
@@ -41,12 +52,17 @@ OpenedFolder open_folder(const RunRequest& request) {
     const Folder folder(request.campaign);
     folder.require_campaign();
     if (!request.out.empty()) throw Refused("--out: has no effect on a campaign that was begun");
+    refuse_other_seeds(request, folder);
     return {folder};
   }
-  const CampaignFile campaign = read_campaign_file(request.campaign);
+  CampaignFile campaign = read_campaign_file(request.campaign);
   const Folder folder(request.out.empty() ? fs::path("runs") / ("campaign-" + campaign.name) : request.out);
-  if (holds_same_campaign(folder, request.campaign)) return {folder};
-  prepare(campaign, folder, request.vbar_version, request.quiet);
+  if (holds_same_campaign(folder, request.campaign)) {
+    refuse_other_seeds(request, folder);
+    return {folder};
+  }
+  draw_seeds(campaign, request.build.commit, request.seeds_from);
+  prepare(campaign, folder, request.build, request.quiet);
   return {folder, true};
 }
 
@@ -192,18 +208,15 @@ int conclude(const RunRequest& request, const Folder& folder) {
   for (const auto& [number, result] : standing.results.of_case) results.push_back(result);
   remove_outdone_runs(standing.plan, results, folder);
   write_results(folder, standing);
-  const fs::path page = write_page(folder.root());
+  const WrittenPage written = write_page(folder.root());
   if (!request.quiet) {
-    fmt::print("{}", status_text(standing, {}));
-    fmt::print("results  {}\npage     {}\n", folder.results().string(), page.string());
+    fmt::print("{}", status_text(standing, written.requirements, {}));
+    fmt::print("results  {}\npage     {}\n", folder.results().string(), written.page.string());
   }
   refuse_conflicts(standing);
   if (!standing.left_to_fly(false).empty()) return app::kInterrupted;
   const bool has_lost = standing.counts().contains(State::kLost);
-  const auto& require = standing.plan.require;
-  const bool is_met =
-      !require || judge(*require, standing.passed(), standing.cases.size(), standing.plan.independent).met;
-  return is_met && !has_lost ? app::kDone : app::kFailed;
+  return campaign_report::all_met(written.requirements) && !has_lost ? app::kDone : app::kFailed;
 }
 
 std::vector<Case> share_of(const WorkerRequest& request, const Standing& standing) {

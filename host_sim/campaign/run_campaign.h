@@ -13,7 +13,8 @@ namespace vbar::campaign {
 struct RunRequest {
   std::filesystem::path campaign;  ///< a campaign file, or the folder of a campaign
   std::filesystem::path out;       ///< folder of a new campaign; empty: runs/campaign-NAME
-  std::string vbar_version;
+  Build build;                     ///< of this program
+  std::string seeds_from;          ///< commit of which the seeds of a new campaign are drawn; empty: this program's
   std::string engine = "local";
   std::string engine_options;  ///< slurm: of sbatch; command: the template
   int jobs = 0;                ///< flights at once; 0: local as there are processors, elsewhere 1 a worker

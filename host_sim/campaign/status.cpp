@@ -3,27 +3,17 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <sstream>
 
 #include <fmt/format.h>
 
-#include "host_sim/campaign_report/statistics.h"
+#include "host_sim/campaign_report/campaign.h"
 #include "host_sim/files/data_stream.h"
 #include "host_sim/files/output_file.h"
 #include "host_sim/report/csv_table.h"
 #include "host_sim/report/plots/number_text.h"
 
 namespace vbar::campaign {
-
-RequirementVerdict judge(const Requirement& requirement, std::size_t passed, std::size_t cases, bool independent) {
-  if (!independent)
-    return {false, "requirement not judged: the cases of a Latin hypercube are not an independent sample"};
-  const double bound = campaign_report::pass_rate(passed, cases, requirement.confidence).lower;
-  const bool met = bound >= requirement.pass_rate;
-  return {met, fmt::format("requirement {}: {} of {} cases passed, a pass rate of at least {:.2f} % at {:g} % "
-                           "confidence, two-sided; {:g} % required",
-                           met ? "met" : "not met", passed, cases, 100.0 * bound, 100.0 * requirement.confidence,
-                           100.0 * requirement.pass_rate)};
-}
 
 CaseStatus Standing::status_of(std::size_t number) const {
   CaseStatus status;
@@ -207,6 +197,15 @@ void write_results(const Folder& folder, const Standing& standing) {
   files::replace_text_file(folder.results(), text_with(standing, missing));
 }
 
+std::vector<campaign_report::JudgedRequirement> judge_requirements(const Folder& folder, const Standing& standing) {
+  if (standing.plan.requirements.empty() || !standing.left_to_fly(false).empty()) return {};
+  std::istringstream text(text_with(standing, {}));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  return campaign_report::judge_requirements(campaign_report::read_campaign(folder.root(), std::move(lines)),
+                                             folder.root().string());
+}
+
 namespace {
 
 constexpr std::size_t kMaxReasons = 5;
@@ -243,14 +242,13 @@ std::string verdicts_text(const Standing& standing) {
 
 }  // namespace
 
-std::string status_text(const Standing& standing, const std::vector<std::string>& jobs) {
+std::string status_text(const Standing& standing, const std::vector<campaign_report::JudgedRequirement>& requirements,
+                        const std::vector<std::string>& jobs) {
   std::string text = fmt::format("{}: {} cases: {}; {} passed\n", standing.plan.name, standing.cases.size(),
                                  states_text(standing), standing.passed());
   text += verdicts_text(standing);
-  if (standing.plan.require && standing.left_to_fly(false).empty())
-    text +=
-        judge(*standing.plan.require, standing.passed(), standing.cases.size(), standing.plan.independent).sentence +
-        "\n";
+  if (standing.left_to_fly(false).empty())
+    for (const campaign_report::JudgedRequirement& judged : requirements) text += judged.sentence + "\n";
   const auto reasons = reasons_of(standing);
   for (std::size_t k = 0; k < std::min(kMaxReasons, reasons.size()); ++k)
     text +=

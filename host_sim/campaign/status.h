@@ -1,5 +1,5 @@
 #pragma once
-// Requirement on a campaign as a whole.
+// State of each case of a campaign, from the files of its workers.
 
 #include <cstddef>
 #include <filesystem>
@@ -10,18 +10,9 @@
 #include "host_sim/campaign/campaign_file.h"
 #include "host_sim/campaign/case_records.h"
 #include "host_sim/campaign/plan.h"
+#include "host_sim/campaign_report/requirement.h"
 
 namespace vbar::campaign {
-
-/// One sentence; `met`: whether the bound reaches the required pass rate. Cases that failed count as not passed.
-struct RequirementVerdict {
-  bool met = false;
-  std::string sentence;
-};
-[[nodiscard]] RequirementVerdict judge(const Requirement& requirement, std::size_t passed, std::size_t cases,
-                                       bool independent);
-
-// State of each case of a campaign, from the files of its workers.
 
 struct CaseStatus {
   State state = State::kNotBegun;
@@ -64,9 +55,16 @@ struct Standing {
 /// Writes results.csv. Throws std::runtime_error that names the file.
 void write_results(const Folder& folder, const Standing& standing);
 
+/// Judges the requirements of a campaign of which no case is left to fly; else returns none.
+[[nodiscard]] std::vector<campaign_report::JudgedRequirement> judge_requirements(const Folder& folder,
+                                                                                 const Standing& standing);
+
 // Status of a campaign, for a reader.
 
-/// Counts of states, passed cases, the requirement, the most frequent reasons of failure, workers, jobs, damaged lines.
-[[nodiscard]] std::string status_text(const Standing& standing, const std::vector<std::string>& jobs);
+/// Counts of states, passed cases, each requirement once no case is left, the most frequent reasons of failure,
+/// workers, jobs, damaged lines.
+[[nodiscard]] std::string status_text(const Standing& standing,
+                                      const std::vector<campaign_report::JudgedRequirement>& requirements,
+                                      const std::vector<std::string>& jobs);
 
 }  // namespace vbar::campaign

@@ -19,9 +19,25 @@ struct Limit {
   std::optional<double> max, min;
 };
 
-/// Requirement on the campaign as a whole.
+/// Statistic of all cases that a requirement limits. kWorst: the largest with `most`, the smallest with `least`.
+/// kShare: of the cases with one of the verdicts. kPassRate: share of the cases that keep all limits.
+enum class Statistic { kMedian, kMean, kWorst, kPercentile, kShare, kPassRate };
+
+/// Requirement on the campaign as a whole: a statistic and one limit, `most` or `least`.
 struct Requirement {
-  double pass_rate_min = 0.0, confidence = 0.0;  ///< 0 to 1, exclusive
+  Statistic statistic = Statistic::kPassRate;
+  std::string key;                    ///< figure of a summary; empty of shares
+  double percentile = 0.0;            ///< of kPercentile, 0 to 100, exclusive
+  std::vector<std::string> verdicts;  ///< of kShare
+  std::optional<double> most, least;
+  std::optional<double> confidence;  ///< the bound of this confidence keeps the limit; never empty of shares
+  std::size_t allow_missing = 0;     ///< cases that may lack the figure or the verdict
+  std::string paper = {};            ///< cell of a published table that the limit is about, for the reader
+
+  /// A rate that is to be shown by the lower Clopper-Pearson bound.
+  [[nodiscard]] static Requirement pass_rate(double least, double confidence) {
+    return {Statistic::kPassRate, {}, 0.0, {}, {}, least, confidence};
+  }
 };
 
 struct Case {
@@ -51,11 +67,13 @@ struct Figure {
 
 struct Campaign {
   std::string name, description, mission, vbar_version, program_sha256;
+  std::string commit;              ///< of the program; empty in campaigns of an older version
+  std::string seeds_from;          ///< commit of which the seeds were drawn; empty if they were stated
   std::vector<std::string> keys;   ///< swept and dispersed keys of the mission
   std::vector<std::string> swept;  ///< those keys that are swept
   std::vector<Limit> limits;       ///< one for each key
   std::vector<double> samples_h;
-  std::optional<Requirement> requirement;
+  std::vector<Requirement> requirements;
   bool is_independent = true;  ///< cases are independent draws: bounds hold
   std::vector<Case> cases;     ///< by number
   std::vector<Figure> figures;
@@ -74,8 +92,12 @@ struct Campaign {
 /// result contradicts the limits.
 [[nodiscard]] Campaign read_campaign(const std::filesystem::path& folder);
 
+/// The same with `results` as the lines of results.csv.
+[[nodiscard]] Campaign read_campaign(const std::filesystem::path& folder, std::vector<std::string> results);
+
 /// The parts of it.
 [[nodiscard]] Campaign read_campaign_json(const std::filesystem::path& file, std::size_t& number_of_cases);
-void read_results(const std::filesystem::path& file, std::size_t number_of_cases, Campaign& campaign);
+void read_results(const std::filesystem::path& file, std::vector<std::string> lines, std::size_t number_of_cases,
+                  Campaign& campaign);
 
 }  // namespace vbar::campaign_report

@@ -89,6 +89,38 @@ std::string notes(const Campaign& campaign) {
 
 }  // namespace
 
+report::Section requirement_section(const Content& content) {
+  std::vector<Row> rows;
+  for (const JudgedRequirement& judged : content.requirements) {
+    const Requirement& requirement = judged.requirement;
+    const auto text = [&](const std::optional<double>& value) { return value ? value_of(requirement, *value) : "–"; };
+    rows.push_back(
+        {subject_of(requirement),
+         fmt::format("<span class=\"{}\">{}</span>", judged.met ? "" : "bad", judged.met ? "met" : "not met"),
+         text(judged.value), text(judged.bound), limit_of(requirement), report::grouped(judged.cases),
+         report::grouped(judged.missing.size()),
+         judged.worst ? fmt::format("{} (seed {})", judged.worst->number, judged.worst->seed) : "–",
+         judged.worst ? fmt::format("<code>{}</code>", report::escaped(judged.worst->command)) : "–",
+         requirement.paper});
+  }
+  if (rows.empty()) return {};
+  return {"Requirements",
+          "<p class=\"note\">Bounds are two-sided, of the stated confidence: Clopper and Pearson of shares, order "
+          "statistics of percentiles. A case without a value is of another state, or its flight gave none.</p>\n" +
+              report::table({{"", false},
+                             {"", false, true},
+                             {"value"},
+                             {"bound"},
+                             {"required"},
+                             {"cases"},
+                             {"without a value"},
+                             {"worst case"},
+                             {"flown again by", false, true},
+                             {"published", false}},
+                            rows),
+          {"results.csv", "campaign.json"}};
+}
+
 report::Section pass_rate_section(const Content& content) {
   const Campaign& campaign = content.campaign;
   std::vector<Row> rows;
@@ -157,9 +189,10 @@ std::string group_table(const Content& content, const char* heading, const char*
   std::vector<std::vector<std::string>> rows;
   for (const Group& group : groups) {
     if (rows.size() == kMaxGroups) break;
-    rows.push_back({group.what, group.example.empty() ? "(not given)" : group.example,
-                    report::grouped(group.cases.size()), numbers_of(group),
-                    fmt::format("<code>{}</code>", report::escaped(rerun_command(content, *group.cases.front())))});
+    rows.push_back(
+        {group.what, group.example.empty() ? "(not given)" : group.example, report::grouped(group.cases.size()),
+         numbers_of(group),
+         fmt::format("<code>{}</code>", report::escaped(rerun_command(content.folder_name, *group.cases.front())))});
   }
   std::string out = fmt::format("<h3>{}</h3>\n", heading);
   if (groups.size() > kMaxGroups) out += fmt::format("<p>The first {} of {}.</p>\n", kMaxGroups, groups.size());
@@ -230,7 +263,7 @@ std::string worst_of(const Content& content, const Quantity& quantity) {
                                 report::escaped(value_text(quantity.key, value))),
                     one.passed.value_or(false) ? "passed" : "not passed", one.seed, inputs_text(content.campaign, one),
                     folder_link(one.folder),
-                    fmt::format("<code>{}</code>", report::escaped(rerun_command(content, one)))});
+                    fmt::format("<code>{}</code>", report::escaped(rerun_command(content.folder_name, one)))});
   }
   std::vector<report::Column> columns{{"case"},
                                       {"value", true, true},

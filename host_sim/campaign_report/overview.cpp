@@ -64,27 +64,17 @@ Judgement judgement_of(const Campaign& campaign) {
           count_cases(campaign, [](const Case& one) { return one.is_judged(); })};
 }
 
-std::string requirement_text(const Campaign& campaign) {
-  if (!campaign.requirement) return {};
-  const Requirement& required = *campaign.requirement;
-  const std::string claim = fmt::format("a pass rate of at least {} with a confidence of {}",
-                                        percent(required.pass_rate_min), percent(required.confidence));
-  const Judgement all = judgement_of(campaign);
-  if (!campaign.is_independent)
-    return fmt::format(
-        "<p><span class=\"status bad\">not shown</span> Required: {}. Cases that are not independent "
-        "draws have no such bound.</p>\n",
-        claim);
-  const PassRate rate = pass_rate(all.passed, all.judged, required.confidence);
-  const bool is_met = rate.lower >= required.pass_rate_min;
-  return fmt::format(
-      "<p><span class=\"status {}\">{}</span> Required: {}; {} of {} passed show at least {} "
-      "(two-sided){}.</p>\n",
-      is_met ? "good" : "bad", is_met ? "shown" : "not shown", claim, report::grouped(all.passed),
-      report::grouped(all.judged), percent(rate.lower),
-      is_met ? ""
-             : fmt::format("; {} without a failure would show it",
-                           values_needed(required.pass_rate_min, required.confidence)));
+std::string requirement_text(const Content& content) {
+  if (content.requirements.empty()) return {};
+  const auto met = std::ranges::count_if(content.requirements, &JudgedRequirement::met);
+  return fmt::format("<p><span class=\"status {0}\">{1}</span> {2} of {3} met.</p>\n",
+                     all_met(content.requirements) ? "good" : "bad", all_met(content.requirements) ? "met" : "not met",
+                     met, count_text(content.requirements.size(), "requirement", "requirements"));
+}
+
+/// "0.3.0, commit 4c048e93e2a1"
+std::string program_text(const Campaign& campaign) {
+  return campaign.vbar_version + (campaign.commit.empty() ? "" : ", commit " + campaign.commit);
 }
 
 std::string tile(std::string_view value, std::string_view meaning) {
@@ -127,9 +117,10 @@ std::string overview(const Content& content) {
   }
   return fmt::format("<h1>{}</h1>\n{}{}<p class=\"lead\">{}</p>\n", report::escaped(campaign.name), census(campaign),
                      verdicts(campaign), report::escaped(campaign.description)) +
-         requirement_text(campaign) + tiles(content) +
+         requirement_text(content) + tiles(content) +
          report::fact_list({{"mission", campaign.mission},
-                            {"vbar", campaign.vbar_version},
+                            {"vbar", program_text(campaign)},
+                            {"seeds", campaign.seeds_from.empty() ? "stated" : "drawn from " + campaign.seeds_from},
                             {"swept", swept.empty() ? "no key" : swept},
                             {"dispersed", dispersed.empty() ? "no key" : dispersed},
                             {"program SHA-256", campaign.program_sha256}});

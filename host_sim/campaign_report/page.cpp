@@ -32,15 +32,20 @@ std::string count_text(std::size_t count, const char* singular, const char* plur
   return fmt::format("{} {}", report::grouped(count), count == 1 ? singular : plural);
 }
 
-std::string rerun_command(const Content& content, const Case& one) {
+std::string name_of_folder(const std::filesystem::path& folder) {
+  const std::filesystem::path whole = std::filesystem::absolute(folder).lexically_normal();
+  return (whole.has_filename() ? whole.filename() : whole.parent_path().filename()).string();
+}
+
+std::string rerun_command(const std::string& folder, const Case& one) {
   // A name that a shell would split or expand is quoted.
-  const std::string& name = content.folder_name;
-  const bool is_plain = name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+.,") ==
-                        std::string::npos;
-  std::string quoted = name;
+  const bool is_plain =
+      folder.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+.,/") ==
+      std::string::npos;
+  std::string quoted = folder;
   if (!is_plain) {
     quoted = "'";
-    for (const char c : name) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    for (const char c : folder) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
     quoted += "'";
   }
   return fmt::format("vbar campaign rerun {} {}", quoted, one.number);
@@ -163,11 +168,12 @@ Plot distribution_function(const Quantity& quantity, const std::vector<double>& 
   return plot;
 }
 
-std::string page_of(const Campaign& campaign, const std::string& folder_name) {
-  const Content content{campaign, quantities(campaign), folder_name};
+std::string page_of(const Campaign& campaign, const std::string& folder_name,
+                    const std::vector<JudgedRequirement>& requirements) {
+  const Content content{campaign, quantities(campaign), folder_name, requirements};
   std::vector<report::Section> sections;
-  for (auto* const section : {pass_rate_section, distribution_section, miss_section, consistency_section,
-                              driver_section, worst_section, failure_section, processor_section})
+  for (auto* const section : {requirement_section, pass_rate_section, distribution_section, miss_section,
+                              consistency_section, driver_section, worst_section, failure_section, processor_section})
     sections.push_back(section(content));
   std::string body = overview(content) + report::contents(sections);
   for (const report::Section& section : sections) body += report::section_html(section);
@@ -178,13 +184,14 @@ std::string page_of(const Campaign& campaign, const std::string& folder_name) {
 
 namespace vbar::campaign {
 
-std::filesystem::path write_page(const std::filesystem::path& folder) {
+WrittenPage write_page(const std::filesystem::path& folder) {
   const campaign_report::Campaign campaign = campaign_report::read_campaign(folder);
-  const std::filesystem::path whole = std::filesystem::absolute(folder).lexically_normal();
-  const std::filesystem::path name = whole.has_filename() ? whole.filename() : whole.parent_path().filename();
-  std::filesystem::path page = folder / "campaign.html";
-  files::replace_text_file(page, campaign_report::page_of(campaign, name.string()));
-  return page;
+  const std::string name = campaign_report::name_of_folder(folder);
+  WrittenPage written{folder / "campaign.html", campaign_report::judge_requirements(campaign, name)};
+  files::replace_text_file(written.page, campaign_report::page_of(campaign, name, written.requirements));
+  files::replace_text_file(folder / "campaign_results.json",
+                           campaign_report::results_json(campaign, written.requirements));
+  return written;
 }
 
 }  // namespace vbar::campaign

@@ -8,6 +8,7 @@
 
 #include "host_sim/campaign_report/campaign.h"
 #include "host_sim/campaign_report/quantity.h"
+#include "host_sim/campaign_report/requirement.h"
 #include "host_sim/campaign_report/statistics.h"
 #include "host_sim/report/plots/html_page.h"
 #include "host_sim/report/plots/svg_plot.h"
@@ -34,9 +35,11 @@ struct Content {
   const Campaign& campaign;
   std::vector<Quantity> quantities;
   std::string folder_name;  ///< folder of the campaign
+  const std::vector<JudgedRequirement>& requirements;
 };
 
 [[nodiscard]] std::string overview(const Content& content);  ///< as HTML
+[[nodiscard]] report::Section requirement_section(const Content& content);
 [[nodiscard]] report::Section pass_rate_section(const Content& content);
 [[nodiscard]] report::Section distribution_section(const Content& content);
 [[nodiscard]] report::Section miss_section(const Content& content);
@@ -55,8 +58,11 @@ struct Content {
 /// "1 case", "2,000 cases"
 [[nodiscard]] std::string count_text(std::size_t count, const char* singular, const char* plural);
 
+/// Name of a folder, however its path ends.
+[[nodiscard]] std::string name_of_folder(const std::filesystem::path& folder);
+
 /// The command that flies a case again.
-[[nodiscard]] std::string rerun_command(const Content& content, const Case& one);
+[[nodiscard]] std::string rerun_command(const std::string& folder, const Case& one);
 
 /// Shortens keys to what distinguishes them: "servicer.mass_kg", "target.mass_kg", "loss_probability".
 [[nodiscard]] std::vector<std::string> short_names(const std::vector<std::string>& keys);
@@ -75,16 +81,21 @@ template <class Predicate>
 // The page of a campaign: one file that opens from disk, without scripts.
 
 /// The page. `folder_name` stands in the commands that fly a case again.
-[[nodiscard]] std::string page_of(const Campaign& campaign, const std::string& folder_name);
+[[nodiscard]] std::string page_of(const Campaign& campaign, const std::string& folder_name,
+                                  const std::vector<JudgedRequirement>& requirements);
 
 }  // namespace vbar::campaign_report
 
 namespace vbar::campaign {
 
+struct WrittenPage {
+  std::filesystem::path page;
+  std::vector<campaign_report::JudgedRequirement> requirements;
+};
+
 /// Reads campaign.json and results.csv of the folder, of a campaign that has ended or still runs, and writes
-/// campaign.html. The same two files give the same page. Throws std::runtime_error that names what is missing or wrong;
-/// a page that was there before then still is. The
-/// path of the page.
-std::filesystem::path write_page(const std::filesystem::path& folder);
+/// campaign.html and campaign_results.json. The same two files give the same contents. Throws std::runtime_error that
+/// names what is missing or wrong; a page that was there before then still is.
+WrittenPage write_page(const std::filesystem::path& folder);
 
 }  // namespace vbar::campaign

@@ -23,7 +23,8 @@ constexpr const char* kTrustHelp =
     "fly a folder whose program is not this one, or whose mission names a library, a device or a testbed";
 constexpr const char* kFolderHelp = "folder of the campaign";
 constexpr const char* kExitCodes =
-    "Exit codes of run: 0 every case has its result and the requirement is met, 1 it is not met, cases were lost, or "
+    "Exit codes of run: 0 every case has its result and every requirement is met, 1 one is not met, cases were lost, "
+    "or "
     "no\n"
     "more can be flown here, 2 refused (nothing was flown), 75 cases are left to fly: run the folder again.";
 
@@ -34,6 +35,8 @@ void add_run(CLI::App& campaign, int& exit_code, const campaign::CommandLine& co
   run->footer(kExitCodes);
   run->add_option("campaign", request->campaign, "campaign file (TOML), or the folder of a campaign")->required();
   run->add_option("--out", request->out, "folder of a new campaign; runs/campaign-NAME unless given");
+  run->add_option("--seeds-from", request->seeds_from,
+                  "commit of which seeds = { count = N, from = \"commit\" } are drawn; that of vbar unless given");
   run->add_option("--jobs", request->jobs, "flights at once; local: as many as processors, else 1 for each worker")
       ->check(integer_from(1));
   run->add_option("--engine", request->engine, "where the workers run: local, slurm or command");
@@ -52,7 +55,7 @@ void add_run(CLI::App& campaign, int& exit_code, const campaign::CommandLine& co
       throw Refused("--submit and --engine command need each other");
     if (request->engine == "local" && request->workers > 0) throw Refused("--workers: has no effect here; use --jobs");
     request->engine_options = *sbatch + *submit;
-    request->vbar_version = build_version();
+    request->build = {build_version(), kBuildCommit};
     request->stop_requested = stop_requested;
     request->command_line = command_line;
     catch_stop_signals();
@@ -65,7 +68,8 @@ int status(const std::filesystem::path& root, bool watch) {
   catch_stop_signals();
   for (;;) {
     const campaign::Standing standing = campaign::read_standing(folder);
-    const std::string text = campaign::status_text(standing, campaign::jobs_of_campaign(folder));
+    const std::string text = campaign::status_text(standing, campaign::judge_requirements(folder, standing),
+                                                   campaign::jobs_of_campaign(folder));
     fmt::print("{}{}", watch && isatty(STDOUT_FILENO) == 1 ? "\x1b[H\x1b[J" : "", text);
     std::fflush(stdout);
     if (!watch || standing.left_to_fly(false).empty()) return kDone;
@@ -89,9 +93,9 @@ int report(const std::filesystem::path& root) {
   const campaign::Folder folder(root);
   const campaign::Standing standing = campaign::read_standing(folder);
   campaign::write_results(folder, standing);
-  const std::filesystem::path page = campaign::write_page(folder.root());
-  fmt::print("{}results  {}\npage     {}\n", campaign::status_text(standing, {}), folder.results().string(),
-             page.string());
+  const campaign::WrittenPage written = campaign::write_page(folder.root());
+  fmt::print("{}results  {}\npage     {}\n", campaign::status_text(standing, written.requirements, {}),
+             folder.results().string(), written.page.string());
   return standing.results.conflicts.empty() ? kDone : kFailed;
 }
 

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "host_sim/campaign/case_records.h"
-#include "host_sim/files/output_file.h"
+#include "host_sim/report/json_file.h"
 #include "host_sim/report/run_folder.h"
 #include "host_sim/report/summary_json.h"
 #include "host_sim/simulation/exit_codes.h"
@@ -109,11 +109,10 @@ CheckedRun checked_by(const fs::path& folder, const campaign::Json& summary,
 }  // namespace
 
 campaign::Json summary_json_of(const fs::path& run) {
-  const fs::path file = report::summary_file(run);
   try {
-    return campaign::Json::parse(files::read_text_file(file));
+    return report::read_json_file(report::summary_file(run));
   } catch (const std::exception& error) {
-    throw Refused(fmt::format("{}: not the summary of a run: {}", file.string(), error.what()));
+    throw Refused(error.what());
   }
 }
 

@@ -6,14 +6,11 @@
 #include <stdexcept>
 #include <type_traits>
 
-#include <nlohmann/json.hpp>
-
 #include "host_sim/files/output_file.h"
+#include "host_sim/report/json_file.h"
 
 namespace vbar::report {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// Version of the keys below. A file of a newer version is rejected: its meaning is unknown here.
 constexpr int kSchema = 2;
@@ -319,13 +316,12 @@ std::string summary_json(const Summary& summary, const std::vector<WaypointRow>&
 }
 
 Summary read_summary(const std::filesystem::path& file) {
-  const std::string content = files::read_text_file(file);
   const auto fail = [&](const char* what) {
     throw std::runtime_error(file.string() + ": not a run's summary: " + what);
   };
   Summary summary;
   try {
-    const Json json = Json::parse(content);
+    const Json json = read_json_file(file);
     const int schema = json.value("schema", 0);
     if (schema > kSchema) {
       throw std::runtime_error(file.string() + ": made by a newer version of this program (schema " +

@@ -9,6 +9,7 @@ import os
 import random
 import re
 import signal
+import statistics
 import subprocess
 import time
 import unittest
@@ -344,6 +345,113 @@ class CampaignRefusals(unittest.TestCase):
                 self.assertEqual(len(rows), 20)
             finally:
                 subprocess.run(["umount", disk], check=True)
+
+
+class CampaignRequirements(unittest.TestCase):
+    """Requirements against the columns of results.csv, by other means than the program's."""
+    KEY = "samples.39.05h.sigma_m"
+
+    def fly(self, folder, *requirements, expect, seeds="1..5"):
+        rest = "".join("[[require]]\n" + "\n".join(lines) + "\n" for lines in requirements)
+        file = campaign_file(folder, seeds=seeds, values="[0.0]", general="samples_h = [39.05]", rest=rest)
+        result = vbar("campaign", "run", file, "--out", folder / "out")
+        self.assertEqual(result.returncode, expect, result.stdout + result.stderr)
+        return result.stdout, json.loads((folder / "out/campaign_results.json").read_text())
+
+    def test_statistics_make_the_exit_code(self):
+        with scratch() as folder:
+            key = f'key = "{self.KEY}"'
+            stdout, results = self.fly(folder, [key, 'statistic = "median"', "most = 1e6", 'paper = "table_4.row_2"'],
+                                       [key, 'statistic = "worst"', "most = 1e6"], [key, 'statistic = "mean"', "least = 0.0"],
+                                       ['statistic = "share"', 'verdict = "not judged"', "least = 0.4"], expect=0)
+            rows = rows_of(folder / "out")
+            values = {int(row["case"]): float(row[self.KEY]) for row in rows}
+            median, worst, mean, share = results["requirements"]
+            self.assertEqual(median["value"], statistics.median(values.values()))
+            self.assertEqual(median["paper"], "table_4.row_2")
+            self.assertEqual(worst["value"], max(values.values()))
+            self.assertEqual(worst["worst"]["case"], max(values, key=values.get))
+            self.assertEqual(worst["worst"]["seed"], rows[worst["worst"]["case"]]["seed"])
+            self.assertAlmostEqual(mean["value"], statistics.fmean(values.values()), delta=1e-9 * mean["value"])
+            self.assertAlmostEqual(share["bound"], 0.025 ** (1 / 5), delta=1e-9, msg="all of n, Clopper and Pearson")
+            self.assertTrue(results["requirements_met"])
+            self.assertEqual(stdout.count("requirement met: "), 4)
+            page = (folder / "out/campaign.html").read_text()
+            self.assertIn("4 of 4 requirements met", page)
+            self.assertIn("table_4.row_2", page)
+            self.assertIn("vbar campaign rerun out", page)
+            command = worst["worst"]["command"].split()
+            self.assertEqual(command[:3] + command[4:], ["vbar", "campaign", "rerun", str(worst["worst"]["case"])])
+            self.assertEqual(vbar("campaign", "rerun", folder / "out", command[4]).returncode, 0)
+            status = vbar("campaign", "status", folder / "out").stdout
+            self.assertEqual(status.count("requirement met: "), 4)
+
+    def test_what_is_not_met_or_missing_fails(self):
+        with scratch() as folder:
+            stdout, results = self.fly(folder, [f'key = "{self.KEY}"', 'statistic = "median"', "most = 0.0"],
+                                       ['key = "no.such_m"', 'statistic = "worst"', "most = 1.0"],
+                                       [f'key = "{self.KEY}"', 'statistic = "percentile"', "percentile = 90.0", "most = 1e6",
+                                        "confidence = 0.95"], expect=1)
+            self.assertEqual([one["met"] for one in results["requirements"]], [False, False, False])
+            self.assertIn("requirement not met: the median of " + self.KEY, stdout)
+            self.assertIn("no.such_m; 5 of 5 cases have no value", stdout)
+            self.assertEqual(results["requirements"][1]["missing"], [0, 1, 2, 3, 4])
+            self.assertIn("too few cases for a bound at 95 % confidence, two-sided: 36 are needed", stdout)
+
+    def test_a_case_that_was_void_is_missing(self):
+        """A fault of a time after the end never takes effect."""
+        with scratch() as folder:
+            late = '[[sweep]]\nkey = "fault"\nvalues = [[], [{ kind = "silent", unit = "crosslink", at_h = 39.2, for_s = 1.0 }]]\n'
+            rest = f'{late}[[require]]\nkey = "{self.KEY}"\nstatistic = "worst"\nmost = 1e6\n'
+            file = campaign_file(folder, seeds="1..1", values="[0.0]", general="samples_h = [39.05]", rest=rest)
+            result = vbar("campaign", "run", file, "--out", folder / "out")
+            self.assertEqual(result.returncode, 1, result.stdout + result.stderr)
+            self.assertEqual([row["state"] for row in rows_of(folder / "out")], ["complete", "void"])
+            self.assertIn("1 of 2 cases has no value (case 1), 0 allowed", result.stdout)
+
+    def test_seeds_are_drawn_from_the_commit(self):
+        with scratch() as folder:
+            file = campaign_file(folder, seeds="1..1", values="[0.0]")
+            file.write_text(file.read_text().replace('"1..1"', '{ count = 3, from = "commit" }'))
+            commit = "bd7e3cb4f00d0123456789abcdef0123456789ab"
+            run(file, "--out", folder / "out", "--seeds-from", commit, "--cases", "0", expect=75)
+            expected = [int(hashlib.sha256(f"{commit[:12]}\nshort\n{k}".encode()).hexdigest()[:8], 16) for k in range(3)]
+            self.assertEqual([int(row["seed"]) for row in rows_of(folder / "out")], expected)
+            plan = json.loads((folder / "out/campaign.json").read_text())
+            self.assertEqual(plan["seeds_from"], commit[:12])
+            version = vbar("--version").stdout
+            self.assertIn(f"commit {plan['commit']},", version)
+            before = rows_of(folder / "out")[0]
+            run(file, "--out", folder / "out", "--cases", "0", expect=75)  # goes on with the seeds on record
+            self.assertEqual(rows_of(folder / "out")[0], before)
+            other = vbar("campaign", "run", folder / "out", "--seeds-from", "0123456789ab")
+            self.assertEqual(other.returncode, 2, other.stdout)
+            self.assertIn(f"--seeds-from: found 0123456789ab; accepted: {commit[:12]}", other.stderr)
+            own = vbar("campaign", "run", file, "--out", folder / "own", "--cases", "0", "--quiet")
+            if plan["commit"] == "unknown":
+                self.assertEqual(own.returncode, 2, own.stdout)
+                self.assertIn("campaign.seeds.from", own.stderr)
+                self.assertIn("--seeds-from HEX", own.stderr)
+            else:
+                self.assertEqual(own.returncode, 75, own.stderr)
+                self.assertEqual(json.loads((folder / "own/campaign.json").read_text())["seeds_from"], plan["commit"])
+
+    def test_a_damaged_plan_is_answered_with_one_sentence(self):
+        with scratch() as folder:
+            file = campaign_file(folder, seeds="1..1", values="[0.0]")
+            run(file, "--out", folder / "out")
+            plan = folder / "out/campaign.json"
+            whole = plan.read_text()
+            for damage, expected in ((whole[:len(whole) // 2], "the file is cut off here"), (whole.replace(":", ";", 1), ":2: the file is damaged here"),
+                                     (whole.replace('"cases": 1', '"cases": "one"'), 'key "cases": "one" is not an integer')):
+                plan.write_text(damage)
+                for command in ("status", "report", "run"):
+                    result = vbar("campaign", command, folder / "out")
+                    self.assertEqual(result.returncode, 1, result.stdout)
+                    self.assertIn(f"{plan}", result.stderr)
+                    self.assertIn(expected, result.stderr)
+                    self.assertNotIn("json.exception", result.stderr)
+                    self.assertEqual(result.stderr.count("\n"), 1)
 
 
 class CampaignKills(unittest.TestCase):

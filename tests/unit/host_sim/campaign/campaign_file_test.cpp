@@ -121,6 +121,142 @@ TEST(CampaignFile, RefusesWhatItCannotMean) {
   EXPECT_THAT(refusal_of(kSeed, "[require]\npass_rate_at_least = 1.5"), HasSubstr("pass_rate_at_least"));
 }
 
+constexpr const char* kStated = "seeds = \"1..2\"";
+
+TEST(Requirements, AreReadWithTheirStatistics) {
+  using campaign_report::Statistic;
+  const CampaignFile campaign = campaign_of(kStated, R"(
+[[require]]
+key = "waypoints.10.navigation_error_m"
+statistic = "percentile"
+percentile = 95.0
+most = 0.045
+confidence = 0.9
+allow_missing = 2
+paper = "table_4.waypoint_10.navigation"
+[[require]]
+statistic = "share"
+verdict = ["achieved", "achieved with faults"]
+least = 0.9
+[[require]]
+key = "dv_mps"
+statistic = "worst"
+least = -1
+[[require]]
+pass_rate_at_least = 0.8
+)");
+  const std::vector<Requirement>& all = campaign.requirements;
+  ASSERT_EQ(all.size(), 4U);
+  EXPECT_EQ(all[0].statistic, Statistic::kPercentile);
+  EXPECT_EQ(all[0].key, "waypoints.10.navigation_error_m");
+  EXPECT_EQ(all[0].percentile, 95.0);
+  EXPECT_EQ(all[0].most, 0.045);
+  EXPECT_FALSE(all[0].least);
+  EXPECT_EQ(all[0].confidence, 0.9);
+  EXPECT_EQ(all[0].allow_missing, 2U);
+  EXPECT_EQ(all[0].paper, "table_4.waypoint_10.navigation");
+  EXPECT_EQ(all[1].statistic, Statistic::kShare);
+  EXPECT_THAT(all[1].verdicts, ElementsAre("achieved", "achieved with faults"));
+  EXPECT_EQ(all[1].confidence, 0.95) << "a share is judged by its bound";
+  EXPECT_EQ(all[2].least, -1.0);
+  EXPECT_FALSE(all[2].confidence);
+  EXPECT_EQ(all[3].statistic, Statistic::kPassRate);
+  EXPECT_EQ(all[3].least, 0.8);
+  const CampaignFile single = campaign_of(kStated, "[require]\npass_rate_at_least = 0.8\nconfidence = 0.9");
+  ASSERT_EQ(single.requirements.size(), 1U);
+  EXPECT_EQ(single.requirements[0].confidence, 0.9);
+}
+
+TEST(Requirements, ThatCannotBeMeantAreRefused) {
+  const auto refused = [](const std::string& lines) { return refusal_of(kStated, "[[require]]\n" + lines); };
+  EXPECT_THAT(refused("key = \"a\"\nmost = 1"), HasSubstr("test.toml:4: require.0.statistic: found nothing"));
+  EXPECT_THAT(refused("key = \"a\"\nstatistic = \"modus\"\nmost = 1"),
+              HasSubstr("test.toml:6: require.0.statistic: found the text \"modus\"; accepted: median, mean, worst, "
+                        "percentile or share"));
+  EXPECT_THAT(refused("statistic = \"median\"\nmost = 1"), HasSubstr("require.0.key: found nothing"));
+  EXPECT_THAT(refused("key = \"\"\nstatistic = \"median\"\nmost = 1"), HasSubstr("a number of summary.json"));
+  EXPECT_THAT(refused("key = \"a\"\nstatistic = \"median\""), HasSubstr("neither most nor least"));
+  EXPECT_THAT(refused("key = \"a\"\nstatistic = \"median\"\nmost = 1\nleast = 0"), HasSubstr("both most and least"));
+  EXPECT_THAT(refused("key = \"a\"\nstatistic = \"median\"\nmost = nan"), HasSubstr("require.0.most: found nan"));
+  EXPECT_THAT(refused("key = \"a\"\nstatistic = \"median\"\nmost = 1\nconfidence = 0.9"),
+              HasSubstr("test.toml:8: require.0.confidence: found this key with statistic = \"median\"; accepted: "
+                        "confidence with statistic = \"percentile\" or \"share\" only"));
+  EXPECT_THAT(refused("key = \"a\"\nstatistic = \"mean\"\npercentile = 50\nmost = 1"),
+              HasSubstr("percentile with statistic = \"percentile\" only"));
+  EXPECT_THAT(refused("key = \"a\"\nstatistic = \"percentile\"\nmost = 1"), HasSubstr("require.0.percentile"));
+  EXPECT_THAT(refused("key = \"a\"\nstatistic = \"percentile\"\npercentile = 100\nmost = 1"),
+              HasSubstr("above 0, up to 99.9999"));
+  EXPECT_THAT(refused("key = \"a\"\nstatistic = \"share\"\nverdict = \"achieved\"\nleast = 1"),
+              HasSubstr("key with statistic ="));
+  EXPECT_THAT(refused("key = \"a\"\nstatistic = \"worst\"\nverdict = \"achieved\"\nleast = 1"),
+              HasSubstr("verdict with statistic = \"share\" only"));
+  EXPECT_THAT(refused("statistic = \"share\"\nverdict = \"good\"\nleast = 1"),
+              HasSubstr("found the text \"good\"; accepted: achieved, achieved with faults, not judged, missed"));
+  EXPECT_THAT(refused("statistic = \"share\"\nverdict = []\nleast = 1"), HasSubstr("require.0.verdict"));
+  EXPECT_THAT(refused("statistic = \"share\"\nverdict = \"achieved\"\nleast = 95"), HasSubstr("from 0 to 1"));
+  EXPECT_THAT(refused("statistic = \"share\"\nverdict = \"achieved\"\nleast = 0.9\nallow_missing = -1"),
+              HasSubstr("require.0.allow_missing"));
+  EXPECT_THAT(refused("key = \"a\"\nstatistic = \"median\"\nmost = 1\nat_most = 2"), HasSubstr("at_most"));
+  EXPECT_THAT(refused("pass_rate_at_least = 0.9\nmost = 1"), HasSubstr("most"));
+}
+
+constexpr const char* kDrawn = "name = \"night\"\nseeds = { count = 100, from = \"commit\" }";
+constexpr const char* kCommit = "4c048e93e2a1";
+
+std::vector<std::uint64_t> seeds_of(const std::string& general, const std::string& commit,
+                                    const std::string& seeds_from = "") {
+  CampaignFile campaign = campaign_of(general);
+  draw_seeds(campaign, commit, seeds_from);
+  return campaign.seeds;
+}
+
+TEST(SeedsFromTheCommit, AreDistinctAndAFunctionOfCommitAndName) {
+  const std::vector<std::uint64_t> seeds = seeds_of(kDrawn, kCommit);
+  ASSERT_EQ(seeds.size(), 100U);
+  EXPECT_EQ(std::set(seeds.begin(), seeds.end()).size(), 100U);
+  // printf '4c048e93e2a1\nnight\n0' | sha256sum | cut -c 1-8, and with 1 in place of 0
+  EXPECT_EQ(seeds[0], 1326054929U);
+  EXPECT_EQ(seeds[1], 3769911069U);
+  EXPECT_EQ(seeds_of(kDrawn, kCommit), seeds);
+  EXPECT_EQ(seeds_of(kDrawn, "unknown", "4C048E93E2A1bd7e3cb4000000000000000000000"), seeds) << "the whole hash";
+  EXPECT_NE(seeds_of(kDrawn, "4c048e93e2a1+")[0], seeds[0]) << "files were changed";
+  EXPECT_NE(seeds_of(kDrawn, "5c048e93e2a1")[0], seeds[0]);
+  EXPECT_NE(seeds_of("name = \"day\"\nseeds = { count = 100, from = \"commit\" }", kCommit)[0], seeds[0]);
+  const std::vector<std::uint64_t> more =
+      seeds_of("name = \"night\"\nseeds = { count = 150, from = \"commit\" }", kCommit);
+  EXPECT_TRUE(std::equal(seeds.begin(), seeds.end(), more.begin())) << "a larger count moves no seed";
+}
+
+TEST(SeedsFromTheCommit, StandInThePlanWithIt) {
+  CampaignFile campaign = campaign_of(kDrawn);
+  draw_seeds(campaign, "4c048e93e2a1+", "");
+  EXPECT_EQ(plan_of(campaign).seeds_from, "4c048e93e2a1+");
+  EXPECT_EQ(expand(campaign)[3].seed, campaign.seeds[3]);
+}
+
+TEST(SeedsFromTheCommit, NeedOne) {
+  const auto refused = [](const std::string& general, const std::string& commit, const std::string& seeds_from) {
+    try {
+      static_cast<void>(seeds_of(general, commit, seeds_from));
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(refused(kDrawn, "unknown", ""),
+            "test.toml:4: campaign.seeds.from: found \"commit\" in a program whose commit is unknown; accepted: a "
+            "program built in a git work tree, or --seeds-from HEX");
+  EXPECT_THAT(refused(kDrawn, kCommit, "night"), HasSubstr("--seeds-from: found night; accepted: 7 to 64 hexadecimal"));
+  EXPECT_THAT(refused(kDrawn, kCommit, "4c048e"), HasSubstr("--seeds-from"));
+  EXPECT_THAT(refused(kStated, kCommit, kCommit), HasSubstr("although test.toml states its seeds"));
+  EXPECT_EQ(refused(kStated, "unknown", ""), "accepted");
+  EXPECT_THAT(refusal_of("seeds = { count = 0, from = \"commit\" }"), HasSubstr("campaign.seeds.count"));
+  EXPECT_THAT(refusal_of("seeds = { count = 1000001, from = \"commit\" }"), HasSubstr("from 1 to 1000000"));
+  EXPECT_THAT(refusal_of("seeds = { count = 5 }"), HasSubstr("campaign.seeds.from"));
+  EXPECT_THAT(refusal_of("seeds = { count = 5, from = \"dice\" }"), HasSubstr("accepted: commit"));
+  EXPECT_THAT(refusal_of("seeds = { count = 5, from = \"commit\", first = 2 }"), HasSubstr("first"));
+}
+
 TEST(CampaignFile, ReadsASweepFromATable) {
   const auto folder = std::filesystem::path(testing::TempDir());
   std::ofstream(folder / "vbar_targets.csv") << "mass,area\n40.0,0.38\n80.0,0.76\n";

@@ -255,15 +255,52 @@ TEST(Criteria, AreNotMetByANumberThatIsMissing) {
   EXPECT_FALSE(has_passed(plan, result));
 }
 
-// Clopper and Pearson (1934), 95 % two-sided, as in published tables.
-TEST(Requirement, IsJudgedByTheLowerClopperPearsonBound) {
-  EXPECT_NEAR(100.0 * campaign_report::pass_rate(20, 20, 0.95).lower, 83.16, 0.005);
-  EXPECT_NEAR(100.0 * campaign_report::pass_rate(99, 100, 0.95).lower, 94.55, 0.005);
-  EXPECT_NEAR(100.0 * campaign_report::pass_rate(997, 1000, 0.95).lower, 99.13, 0.005);
-  EXPECT_EQ(campaign_report::pass_rate(0, 10, 0.95).lower, 0.0);
-  EXPECT_TRUE(judge({0.83, 0.95}, 20, 20, true).met);
-  EXPECT_FALSE(judge({0.84, 0.95}, 20, 20, true).met);
-  EXPECT_FALSE(judge({0.5, 0.95}, 20, 20, false).met) << "of a Latin hypercube no bound is known";
+class PlanFile : public RecordFiles {
+ protected:
+  [[nodiscard]] std::string complaint_of(const std::string& text) const {
+    const std::filesystem::path file = folder_ / "campaign.json";
+    std::ofstream(file, std::ios::binary) << text;
+    try {
+      static_cast<void>(read_plan(file));
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+};
+
+TEST_F(PlanFile, IsReadAsItWasWritten) {
+  Plan plan;
+  plan.name = "n";
+  plan.commit = "4c048e93e2a1";
+  plan.seeds_from = "4c048e93e2a1+";
+  plan.passes = {{"dv_mps", 0.3, std::nullopt}};
+  plan.requirements = {Requirement::pass_rate(0.9, 0.95)};
+  plan.keep = {Keep::Kind::kWorst, 3};
+  const std::string text = plan_json(plan);
+  EXPECT_EQ(complaint_of(text), "accepted");
+  EXPECT_EQ(plan_json(read_plan(folder_ / "campaign.json")), text);
+}
+
+// One sentence with the place: a file that was cut anywhere, or has other contents.
+TEST_F(PlanFile, ThatIsDamagedIsAnsweredWithItsPlace) {
+  const std::string text = plan_json(Plan());
+  for (std::size_t length = 0; length + 2 < text.size(); ++length) {
+    const std::string complaint = complaint_of(text.substr(0, length));
+    EXPECT_THAT(complaint, testing::MatchesRegex(".*campaign.json:[0-9]+: the file is cut off here; accepted: a whole "
+                                                 "JSON file, as this program writes it"))
+        << length;
+  }
+  std::string damaged = text;
+  damaged[text.find("\"cases\"")] = '#';
+  EXPECT_THAT(complaint_of(damaged), testing::HasSubstr("campaign.json:10: the file is damaged here"));
+  damaged = text;
+  damaged.replace(text.find("\"cases\": 0"), 10, "\"cases\": -1");
+  EXPECT_THAT(complaint_of(damaged), testing::HasSubstr("key \"cases\": -1 is not an integer from 0 on"));
+  damaged = text;
+  damaged.replace(text.find("\"keys\""), 6, "\"kegs\"");
+  EXPECT_THAT(complaint_of(damaged), testing::HasSubstr("campaign.json: key \"keys\": is missing"));
+  EXPECT_THAT(complaint_of("[]"), testing::HasSubstr("campaign.json: a JSON object is expected"));
 }
 
 }  // namespace

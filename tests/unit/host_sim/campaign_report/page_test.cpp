@@ -44,8 +44,9 @@ class CampaignPage : public report::test::ScratchFolder {
 
 TEST_F(CampaignPage, ShowsEverySection) {
   const std::string html = page_of({.cases = 300, .is_swept = true, .failed_share = 0.1});
-  for (const char* const heading : {"Pass rates", "Distributions", "Miss distances", "Consistency of the filter",
-                                    "What drives the figures", "Worst cases", "Failures", "Time and processors"})
+  for (const char* const heading :
+       {"Requirements", "Pass rates", "Distributions", "Miss distances", "Consistency of the filter",
+        "What drives the figures", "Worst cases", "Failures", "Time and processors"})
     EXPECT_THAT(html, HasSubstr("<h2>" + std::string(heading) + "</h2>"));
   EXPECT_EQ(complaints(), "");
 }

@@ -132,7 +132,7 @@ TEST_F(ReadCampaign, RefusesMembersThatAreMissingOrOfAnotherKind) {
               HasSubstr("require: key \"pass_rate_at_least\": 95 is not between 0 and 1"));
   EXPECT_THAT(complaint_of(R"("pass": [], "format": 2)"), HasSubstr("2 is not supported; accepted: 1"));
   write(scratch_ / "campaign.json", "{");
-  EXPECT_THAT(complaint(), HasSubstr("campaign.json: not a JSON file"));
+  EXPECT_THAT(complaint(), HasSubstr("campaign.json:1: the file is cut off here"));
   write(scratch_ / "campaign.json", "[]");
   EXPECT_THAT(complaint(), HasSubstr("a JSON object is expected"));
 }
