@@ -29,6 +29,10 @@ stage "build for the bare Zynq and for Linux on the Zynq"
 ci/build.sh zynq zynq-linux
 stage "tests"
 ctest --preset host --parallel 2
+stage "sample of the verification, with seeds of this commit: no run may be lost or unsafe"
+sample=$(mktemp -d)
+build/host/vbar verify sample --to "$sample"
+rm -r "$sample"
 stage "mutants of kernels: the tests of their modules must fail"
 ci/mutate.sh
 stage "the second compiler, all warnings errors, and an eighth of the unit tests under its sanitizers"

@@ -1,6 +1,12 @@
-"""Poses that an emulated TRON really showed, against those of the mission: from the folder of a run."""
+#!/usr/bin/env python3
+"""Poses that an emulated TRON really showed, against those of the mission: from the folder of a run of experiment2_hil.
+
+    ci/tron_truth.py RUN_FOLDER...     medians and 95 % of position and attitude, for each run
+"""
 import csv
 import math
+import pathlib
+import sys
 import tomllib
 
 
@@ -70,3 +76,19 @@ def pose_errors(folder, camera_position_m, body_file, scale):
 
 def quantile(values, share):
     return sorted(values)[min(len(values) - 1, round(share * (len(values) - 1)))]
+
+
+def main():
+    root = pathlib.Path(__file__).resolve().parent.parent
+    camera = tomllib.loads((root / "missions/experiment2.toml").read_text())["spacecraft"][0]["sensors"]["camera"]
+    scale = tomllib.loads((root / "data/benches/tron.toml").read_text())["scale"]
+    if len(sys.argv) < 2:
+        raise SystemExit(__doc__)
+    for folder in map(pathlib.Path, sys.argv[1:]):
+        errors = pose_errors(folder, camera["position_body_m"], root / "data/bodies/tango.toml", scale)
+        print(folder, *(f"{quantile([error[k] for error in errors], share):.3f} {unit}"
+                        for k, unit in ((0, "mm"), (1, "deg")) for share in (0.5, 0.95)))
+
+
+if __name__ == "__main__":
+    main()

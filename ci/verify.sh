@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Complete verification: all tests, then the complete missions on every flight computer. Writes docs/verification.md.
+# Complete verification: all tests, fuzzing, new Debian roots, campaigns and resumes at full size, then every row of missions/verification,
+# and the pages of what was flown. A budget in minutes as argument cuts the rows; the same command continues them.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 ci/test.sh
@@ -13,6 +14,12 @@ ci/bundle.sh --check13 || (($? == 77))
 gnss_sdr=(python3 tests/peers/gnss_sdr/check_gnss_sdr.py build/host/tests/peers/gnss_sdr/vbar_gnss_sdr_tool)
 "${gnss_sdr[@]}" receiver
 "${gnss_sdr[@]}" baseline
-python3 ci/verify.py
-# Last, because it needs both cores for itself for ten minutes.
-python3 ci/verify_gnss_sdr.py
+ci/verify_campaign.py
+ci/verify_resume.py build/host/vbar
+ci/calibrate_benches.sh
+met=0
+build/host/vbar verify --to runs/verification ${1:+--budget "$1"} || met=$?
+((met <= 1)) || exit "$met"
+cp runs/verification/verification.json docs/
+build/host/vbar verify --page docs/verification.json
+exit "$met"

@@ -27,6 +27,11 @@ namespace vbar::app {
 /// a flight of a campaign is one.
 void add_campaign_command(CLI::App& program, int& exit_code, const campaign::CommandLine& command_line);
 
+// vbar verify on the command line: rows of missions/verification are campaigns.
+
+/// Adds the command, as above.
+void add_verify_command(CLI::App& program, int& exit_code, const campaign::CommandLine& command_line);
+
 // vbar completion: command lines completed by a shell.
 
 /// The command; it reads the commands and options of `program`, which all have to be there when it runs.

@@ -105,7 +105,7 @@ int after_output(const CLI::App& program, int result) {
   const auto leaves_folder = [](const CLI::App* command) {
     const std::string name = command->get_name();
     return name == "run" || name == "resume" || name == "propagate" ||
-           (name == "campaign" && command->got_subcommand("run"));
+           name == "verify" || (name == "campaign" && command->got_subcommand("run"));
   };
   if (!std::ranges::any_of(commands, leaves_folder))
     return complain(("standard output cannot be written" + reason).c_str(), result == kDone ? kFailed : result);
@@ -244,6 +244,7 @@ int execute(int argc, char** argv) {
   check_app->callback([&] { exit_code = check_command(check); });
 
   add_campaign_command(program, exit_code, execute_line);
+  add_verify_command(program, exit_code, execute_line);
 
   std::filesystem::path missions;
   CLI::App* missions_app = program.add_subcommand("missions", "what can be run, one line each");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <optional>
 
 #include <fmt/format.h>
@@ -172,6 +173,32 @@ void summarise_flight_steps(const RunRecord& record, Summary& summary) {
   summary.flight_step = total;
 }
 
+/// Of missions with a table [safety]: demands to retreat, alarms of the guard, drifts that do not keep the distance,
+/// and the largest collision probability after the retreat burn of a step. Counts are zero where there was nothing to
+/// count.
+void summarise_safety(const RunRecord& record, Summary& summary) {
+  using Health = telemetry_health;
+  const auto is_one_of = [](std::int32_t fault, std::initializer_list<std::int32_t> faults) {
+    return std::ranges::find(faults, fault) != faults.end();
+  };
+  if (record.of<telemetry_safety>().empty()) return;
+  double retreats = 0.0, alarms = 0.0, drifts = 0.0, probability = 0.0;
+  for (const auto& [time_s, step_time_s, event] : record.of<telemetry_event>()) {
+    if (event.event != telemetry_event::kEventFaultRaised) continue;
+    if (is_one_of(event.fault, {Health::kFaultRetreat})) ++retreats;
+    if (is_one_of(event.fault, {Health::kFaultGuardRange, Health::kFaultGuardSilence, Health::kFaultGuardBurns,
+                                Health::kFaultGuardClosing}))
+      ++alarms;
+    if (is_one_of(event.fault, {Health::kFaultDriftUnsafe, Health::kFaultCollisionProbability})) ++drifts;
+  }
+  for (const auto& [time_s, step_time_s, safety] : record.of<telemetry_safety>())
+    probability = std::max(probability, safety.collision_probability);
+  summary.sensor_figures["safety"] = {{"retreats", retreats},
+                                      {"guard_alarms", alarms},
+                                      {"drifts_unsafe", drifts},
+                                      {"collision_probability_max", probability}};
+}
+
 }  // namespace
 
 Summary summarise(const RunRecord& record) {
@@ -187,6 +214,7 @@ Summary summarise(const RunRecord& record) {
   summary.sensor_figures.clear();
   for (const Extension* extension : record.extensions)
     if (extension->summarise != nullptr) extension->summarise(record, summary);
+  summarise_safety(record, summary);
   summarise_consistency(record, summary);
   if (!record.of<telemetry_health>().empty()) summary.health = record.of<telemetry_health>().back().message;
   summary.never_navigated = never_navigated(record, summary);

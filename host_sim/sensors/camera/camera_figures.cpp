@@ -50,6 +50,12 @@ void summarise_angles_only(const RunRecord& record, Summary& summary) {
     size.push_back(std::hypot(x.back(), y.back()));
   }
   summary.star_attitude_error_arcsec = statistics_of(across);
+  if (!all_nees.empty() && !record.truth.empty()) {
+    const auto used =
+        std::ranges::find_if(record.tables.rows<ImageRow>(), [](const ImageRow& row) { return !!row.nees; });
+    summary.sensor_figures["images"]["acquired_s"] = used->time_s - record.truth.front().time_s;
+    summary.sensor_figures["images"]["nees_max"] = *std::ranges::max_element(all_nees);
+  }
   if (!all_nees.empty()) summary.navigation_nees = mean_of(all_nees);
   summary.bearing_error_arcsec.reset();
   if (size.empty()) return;
@@ -92,12 +98,19 @@ void summarise_poses(const RunRecord& record, Summary& summary) {
                                     {"restarts", figures->restarts},
                                     {"without_truth", figures->without_truth}};
   if (figures->attitude_nees) summary.sensor_figures["pose"]["attitude_nees"] = *figures->attitude_nees;
-  std::vector<double> attitude_errors, nees;
+  constexpr double kClose_m = 50.0;  // from here on keypoints resolve the attitude in every view
+  std::vector<double> attitude_errors, close_attitude_errors, nees;
   for (const PoseRow& row : record.tables.rows<PoseRow>()) {
     if (row.attitude_error_deg) attitude_errors.push_back(*row.attitude_error_deg);
+    if (row.attitude_error_deg && row.range_m && *row.range_m <= kClose_m)
+      close_attitude_errors.push_back(*row.attitude_error_deg);
     if (row.nees) nees.push_back(*row.nees);
   }
   summary.attitude_error_deg = statistics_of(attitude_errors);
+  if (!close_attitude_errors.empty()) {
+    std::ranges::sort(close_attitude_errors);
+    summary.sensor_figures["pose"]["close_attitude_error_median_deg"] = quantile(close_attitude_errors, 0.5);
+  }
   if (!nees.empty()) summary.navigation_nees = mean_of(nees);
 }
 

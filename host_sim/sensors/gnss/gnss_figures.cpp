@@ -170,6 +170,26 @@ std::optional<double> time_to_20_mm(const report::RunRecord& record) {
   return last_outside.base()->time_s - record.estimates.front().time_s;
 }
 
+namespace {
+
+/// After the first fix: the longest time without integers that are held, and the time in which the estimate was
+/// propagated alone.
+void add_times_without_fix(const report::RunRecord& record, double fix_s, std::map<std::string, double>& figures) {
+  double fixed_s = fix_s, longest_s = 0.0, propagated_s = 0.0;
+  for (std::size_t k = 0; k < record.estimates.size(); ++k) {
+    const report::EstimateRow& row = record.estimates[k];
+    if (row.time_s < fix_s) continue;
+    longest_s = std::max(longest_s, row.time_s - fixed_s);
+    if (row.navigation_source == telemetry_navigation::kSourceGnssFixed) fixed_s = row.time_s;
+    if (row.navigation_source == telemetry_navigation::kSourcePropagated && k > 0)
+      propagated_s += row.time_s - record.estimates[k - 1].time_s;
+  }
+  figures["longest_without_fix_s"] = longest_s;
+  figures["propagated_s"] = propagated_s;
+}
+
+}  // namespace
+
 void summarise_gnss(const report::RunRecord& record, report::Summary& summary) {
   if (record.tables.rows<GnssRow>().empty()) return;
   const std::optional<double> fix_s = report::first_fix(record);
@@ -179,6 +199,7 @@ void summarise_gnss(const report::RunRecord& record, report::Summary& summary) {
   summary.navigation_nees = report::mean_of(nees);
   std::map<std::string, double>& figures = summary.sensor_figures["gnss"];
   add(figures, "time_to_20_mm_s", time_to_20_mm(record));
+  if (fix_s) add_times_without_fix(record, *fix_s, figures);
   for (const SignalNoiseRow& row : record.tables.rows<SignalNoiseRow>()) {
     const std::string signal = name_part(row.signal);
     add(figures, signal + "_phase_sigma_mm", row.phase_sigma_mm);

@@ -14,10 +14,7 @@ import subprocess
 import sys
 import unittest
 
-from vbar_program import BINARY, SOURCE, fly, main, scratch
-
-sys.path.append(str(SOURCE / "ci"))
-import verify
+from vbar_program import BINARY, SOURCE, main, scratch
 
 BLOCK = re.compile(r"(?:File `([^`\n]+)`:\n\n)?^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 ANY = "…"
@@ -95,12 +92,6 @@ class Tutorial(Page, unittest.TestCase):
 
 class Figures(unittest.TestCase):
     """Figures of ideal_navigation that stand in other pages."""
-
-    def test_verification_has_the_figures_of_the_program(self):
-        with scratch() as folder:
-            table = verify.mission_table(fly(folder / "run"))
-        self.assertIn(table, (SOURCE / "docs/verification.md").read_text(),
-                      "renew the table of docs/verification.md (ci/verify.py, mission_table)")
 
     def test_no_other_page_repeats_the_table(self):
         """Its first leg, which no other mission has: 1.480728 m/s in 18 maneuvers."""
