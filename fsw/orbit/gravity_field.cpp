@@ -21,12 +21,11 @@ constexpr double square_root(double x) {
 }
 
 /// Weights of a harmonic of the gradient in the three components, and c of the recursion p_k = z p_(k-1) - q c
-/// p_(k-2).
+/// p_(k-2). Weights that are summed alike lie side by side.
 struct Term {
   double recursion = 0.0;
-  double x_cos = 0.0, x_sin = 0.0;
-  double y_cos = 0.0, y_sin = 0.0;
-  double z_cos = 0.0, z_sin = 0.0;
+  double x_cos = 0.0, y_cos = 0.0, z_cos = 0.0;
+  double x_sin = 0.0, y_sin = 0.0, z_sin = 0.0;
 };
 
 /// By order, and in it by degree.
@@ -99,6 +98,24 @@ constexpr Series make_series() {
 
 constexpr Series kSeries = make_series();
 
+/// Two sums side by side, which a processor with registers for both adds in one operation; each has the bits that it
+/// has alone.
+using Pair [[gnu::vector_size(2 * sizeof(double))]] = double;
+
+/// The sums of an order: [x_cos, y_cos], [z_cos, x_sin], [y_sin, z_sin].
+struct Sums {
+  Pair xy_cos{}, z_cos_x_sin{}, yz_sin{};
+
+  void add(double p, const Term& term) {
+    const Pair factor{p, p};
+    xy_cos += factor * Pair{term.x_cos, term.y_cos};
+    z_cos_x_sin += factor * Pair{term.z_cos, term.x_sin};
+    yz_sin += factor * Pair{term.y_sin, term.z_sin};
+  }
+  [[nodiscard]] Vector3 of_cos() const { return {xy_cos[0], xy_cos[1], z_cos_x_sin[0]}; }
+  [[nodiscard]] Vector3 of_sin() const { return {z_cos_x_sin[1], yz_sin[0], yz_sin[1]}; }
+};
+
 }  // namespace
 
 Vector3 gravity_itrf(const Vector3& position_itrf) {
@@ -112,8 +129,7 @@ Vector3 gravity_itrf(const Vector3& position_itrf) {
   double sin_m = 0.0;
   const Term* term = kSeries.data();
   for (int m = 0; m <= kLast; ++m) {
-    Vector3 of_cos = Vector3::Zero();
-    Vector3 of_sin = Vector3::Zero();
+    Sums sums;
     double p = 1.0;
     double before = 0.0;
     for (int n = m; n <= kLast; ++n, ++term) {
@@ -122,10 +138,9 @@ Vector3 gravity_itrf(const Vector3& position_itrf) {
         before = p;
         p = next;
       }
-      of_cos += p * Vector3(term->x_cos, term->y_cos, term->z_cos);
-      of_sin += p * Vector3(term->x_sin, term->y_sin, term->z_sin);
+      sums.add(p, *term);
     }
-    sum += cos_m * of_cos + sin_m * of_sin;
+    sum += cos_m * sums.of_cos() + sin_m * sums.of_sin();
     const double next_cos = cos_m * unit.x() - sin_m * unit.y();
     sin_m = cos_m * unit.y() + sin_m * unit.x();
     cos_m = next_cos;

@@ -8,8 +8,8 @@
 namespace vbar::fsw::packets {
 namespace {
 
-// Eight bytes at a time, as in fsw/core/crc32.h; 4 KiB.
-constexpr std::size_t kSlices = 8;
+// Sixteen bytes at a time, by tables as in fsw/core/crc32.h; 8 KiB. Every byte of an image passes here on each link.
+constexpr std::size_t kSlices = 16;
 
 /// Entry [n][b]: the register after byte b and n bytes of zero, from a register of zero.
 constexpr auto kCrc16Tables = [] {
@@ -38,10 +38,12 @@ std::uint16_t crc16_ccitt_false(std::span<const std::uint8_t> bytes) {
   while (bytes.size() >= kSlices) {
     const std::uint32_t high = (crc >> 8U) ^ bytes[0];
     const std::uint32_t low = (crc & 0xFFU) ^ bytes[1];
-    const std::uint32_t head = std::uint32_t{t[7][high]} ^ t[6][low];
-    const std::uint32_t rest = std::uint32_t{t[5][bytes[2]]} ^ t[4][bytes[3]] ^ t[3][bytes[4]] ^ t[2][bytes[5]] ^
-                               t[1][bytes[6]] ^ t[0][bytes[7]];
-    crc = head ^ rest;
+    const std::uint32_t head = std::uint32_t{t[15][high]} ^ t[14][low];
+    const std::uint32_t middle = std::uint32_t{t[13][bytes[2]]} ^ t[12][bytes[3]] ^ t[11][bytes[4]] ^ t[10][bytes[5]] ^
+                                 t[9][bytes[6]] ^ t[8][bytes[7]];
+    const std::uint32_t rest = std::uint32_t{t[7][bytes[8]]} ^ t[6][bytes[9]] ^ t[5][bytes[10]] ^ t[4][bytes[11]] ^
+                               t[3][bytes[12]] ^ t[2][bytes[13]] ^ t[1][bytes[14]] ^ t[0][bytes[15]];
+    crc = head ^ (middle ^ rest);
     bytes = bytes.subspan(kSlices);
   }
   for (const std::uint8_t byte : bytes) crc = ((crc << 8U) & 0xFFFFU) ^ t[0][(crc >> 8U) ^ byte];
