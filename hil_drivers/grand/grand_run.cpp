@@ -362,7 +362,10 @@ void GrandRun::finish() noexcept {
   RunFigures figures;
   figures.pace = settings_.pace;
   figures.generator = settings_.generator->name;
-  figures.is_emulated = process_.has_value();
+  // By what the devices state: an emulated bench may have been started by hand.
+  figures.is_emulated =
+      process_.has_value() || (generator_ && generator_->is_emulated()) ||
+      std::ranges::any_of(vehicles_, [](const Vehicle& one) { return one.link && one.link->is_emulated(); });
   if (process_) {
     figures.bench_files = process_->files();
     figures.faults = process_->faults();
