@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/post.hpp>
@@ -182,6 +183,7 @@ void Acquisition::stop() {
   run_ = std::make_shared<int>(0);
   is_acquiring_ = false;
   is_exposing_ = false;
+  delayed_frame_.reset();
   frame_timer_.cancel();
   registers_.lock_for_acquisition(false);
 }
@@ -229,8 +231,7 @@ void Acquisition::expose() {
   request.number = statistics_.exposures++;
   Frame frame;
   frame.leader.payload_type = payload_type_;
-  frame.leader.timestamp_ticks =
-      static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(begin - epoch_).count());
+  frame.leader.timestamp_ticks = ticks();
   frame.leader.format = static_cast<wire::PixelFormat>(registers_.integer(kPixelFormat));
   frame.leader.width = registers_.integer(kWidth);
   frame.leader.height = registers_.integer(kHeight);
@@ -250,8 +251,18 @@ void Acquisition::end_exposure(Frame frame) {
   after(readout_s, [this, shared = std::make_shared<Frame>(std::move(frame))] { read_out(shared); });
 }
 
+std::uint64_t Acquisition::ticks() const {
+  return static_cast<std::uint64_t>(std::chrono::nanoseconds(Clock::now() - epoch_).count());
+}
+
 void Acquisition::read_out(std::shared_ptr<const Frame> frame) {
-  if (lost_frames_ > 0) {
+  if (const auto late = std::exchange(delayed_frame_, nullptr)) send(*late);
+  if (delayed_frames_ > 0) {
+    --delayed_frames_;
+    ++statistics_.frames_delayed;
+    if (!delays_all_) send(*frame);
+    delayed_frame_ = std::move(frame);
+  } else if (lost_frames_ > 0) {
     --lost_frames_;
     ++statistics_.frames_lost;
   } else if (repeated_frames_ > 0 && last_frame_) {

@@ -133,7 +133,7 @@ struct AcquisitionStatistics {
   std::int64_t triggers_dropped = 0;  ///< during an exposure
   std::int64_t exposures = 0;
   std::int64_t frames_dropped = 0;  ///< with the stream channel full
-  std::int64_t frames_lost = 0, frames_repeated = 0;
+  std::int64_t frames_lost = 0, frames_repeated = 0, frames_delayed = 0;
 };
 
 class Acquisition {
@@ -153,7 +153,15 @@ class Acquisition {
   void lose_frames(int count) { lost_frames_ = count; }
   /// Repeats frames: in the place of the next `count` frames the one before is sent, with its time stamp.
   void repeat_frames(int count) { repeated_frames_ = count; }
+  /// Delays the next `count` frames: each is sent after the next trigger only, before the frame of that trigger, with
+  /// its own time stamp. `alone`: the frame of that trigger is delayed likewise, otherwise it follows at once.
+  void delay_frames(int count, bool alone) {
+    delayed_frames_ = count;
+    delays_all_ = alone;
+  }
   void set_payload_type(wire::PayloadType type) { payload_type_ = type; }
+  /// Returns the time of the clock of the frames' time stamps.
+  [[nodiscard]] std::uint64_t ticks() const;
 
   [[nodiscard]] const AcquisitionStatistics& statistics() const { return statistics_; }
 
@@ -187,8 +195,10 @@ class Acquisition {
   std::shared_ptr<int> run_ =
       std::make_shared<int>(0);  ///< replaced by start and stop, so that what was begun before is dropped
   double exposure_factor_ = 1.0;
-  int ignored_triggers_ = 0, lost_frames_ = 0, repeated_frames_ = 0;
-  std::shared_ptr<const Frame> last_frame_;  ///< that was sent
+  int ignored_triggers_ = 0, lost_frames_ = 0, repeated_frames_ = 0, delayed_frames_ = 0;
+  bool delays_all_ = false;
+  std::shared_ptr<const Frame> last_frame_;     ///< that was sent
+  std::shared_ptr<const Frame> delayed_frame_;  ///< that is sent after the next trigger
   wire::PayloadType payload_type_ = wire::PayloadType::kImage;
   AcquisitionStatistics statistics_;
 };

@@ -210,12 +210,21 @@ class Device::Control {
     if (address % 4 != 0) return Status::kBadAlignment;
     if (address == bootstrap::kControlPrivilege && bytes.size() == 4) return claim(wire::load_u32(bytes, 0), sender);
     if (owner_ != sender) return Status::kAccessDenied;
+    if (address == bootstrap::kTimestampControl && bytes.size() == 4) return control_clock(wire::load_u32(bytes, 0));
     const Registers::Written written = registers_.write(address, bytes);
     if (written.status != Status::kSuccess) return written.status;
     if (written.feature)
       act(*written.feature);
     else
       apply_channel(address, bytes);
+    return Status::kSuccess;
+  }
+
+  Status control_clock(std::uint32_t command) {
+    if (command != bootstrap::kLatchTimestamp) return Status::kInvalidParameter;  // this clock cannot be reset
+    const std::uint64_t ticks = acquisition_.ticks();
+    registers_.set_word(bootstrap::kTimestampHigh, static_cast<std::uint32_t>(ticks >> 32U));
+    registers_.set_word(bootstrap::kTimestampLow, static_cast<std::uint32_t>(ticks));
     return Status::kSuccess;
   }
 
@@ -340,6 +349,9 @@ void Device::lose_frames(int count) {
 }
 void Device::repeat_frames(int count) {
   control_->acquisition().repeat_frames(count);
+}
+void Device::delay_frames(int count, bool alone) {
+  control_->acquisition().delay_frames(count, alone);
 }
 void Device::set_payload_type(wire::PayloadType type) {
   control_->acquisition().set_payload_type(type);

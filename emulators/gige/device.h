@@ -57,6 +57,8 @@ class Device {
   /// stamp.
   void lose_frames(int count);
   void repeat_frames(int count);
+  /// Delays frames until after the next trigger (Acquisition::delay_frames).
+  void delay_frames(int count, bool alone);
   /// Sets the type that blocks state; pixels do not change.
   void set_payload_type(wire::PayloadType type);
 

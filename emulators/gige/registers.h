@@ -36,6 +36,9 @@ inline constexpr std::uint32_t kCapability = 0x934;
 inline constexpr std::uint32_t kHeartbeatMs = 0x938;
 inline constexpr std::uint32_t kTickFrequencyHigh = 0x93C;
 inline constexpr std::uint32_t kTickFrequencyLow = 0x940;
+inline constexpr std::uint32_t kTimestampControl = 0x944;
+inline constexpr std::uint32_t kTimestampHigh = 0x948;  ///< as latched last
+inline constexpr std::uint32_t kTimestampLow = 0x94C;
 inline constexpr std::uint32_t kControlPrivilege = 0xA00;
 inline constexpr std::uint32_t kStreamPort = 0xD00;
 inline constexpr std::uint32_t kPacketSize = 0xD04;
@@ -43,6 +46,7 @@ inline constexpr std::uint32_t kPacketDelay = 0xD08;  ///< ticks
 inline constexpr std::uint32_t kStreamDestination = 0xD18;
 
 inline constexpr std::uint32_t kExclusiveAccess = 1, kControlAccess = 2;
+inline constexpr std::uint32_t kLatchTimestamp = 2;
 inline constexpr std::uint32_t kFireTestPacket = 0x80000000, kDoNotFragment = 0x40000000;
 inline constexpr std::uint32_t kMinPacketSize = 576, kMaxPacketSize = 9000;
 inline constexpr std::uint32_t kTicksPerSecond = 1'000'000'000;

@@ -184,6 +184,8 @@ class ReceiverLink {
   /// Returns the figures since the last call of this function.
   [[nodiscard]] ReceiverSecond second();
   [[nodiscard]] LinkStatistics statistics() const;
+  /// Returns true if the receiver has named itself an emulation; after close().
+  [[nodiscard]] bool is_emulated() const { return port_.is_emulated(); }
   [[nodiscard]] bool is_lost() const { return lost_since_.has_value(); }
   /// Number of bytes in logs that were received whole.
   [[nodiscard]] std::uint64_t message_bytes() const { return cutter_.counters().message_bytes; }

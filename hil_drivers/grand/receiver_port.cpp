@@ -260,8 +260,10 @@ void ReceiverPort::receive(Deadline deadline) {
 }
 
 void ReceiverPort::take_available() {
+  constexpr std::string_view kEmulated = "EMULATED";
   const std::size_t before = inbox_.size();
   const auto keep = [&] {
+    if (inbox_.size() > before) is_emulated_ = is_emulated_ || !std::ranges::search(inbox_, kEmulated).empty();
     if (keep_ && inbox_.size() > before) keep_(std::span(inbox_).subspan(before));
   };
   try {

@@ -108,6 +108,8 @@ class ReceiverPort {
 
   [[nodiscard]] const std::string& device() const { return device_; }
   [[nodiscard]] const std::string& spacecraft() const { return spacecraft_; }
+  /// Returns true once the receiver has named itself an emulation, in the VERSION log that open() asks for.
+  [[nodiscard]] bool is_emulated() const { return is_emulated_; }
   /// Receiver's own name of the port ("COM1"), once it has prompted; until then empty.
   [[nodiscard]] const std::string& port_name() const { return port_name_; }
 
@@ -133,6 +135,7 @@ class ReceiverPort {
   Keep keep_;
   Patience patience_;
   PortTime time_;
+  bool is_emulated_ = false;
   std::unique_ptr<io::SerialLine> line_;
   Bytes inbox_;            ///< bytes since the last command, or since the first log
   std::size_t asked_ = 0;  ///< begin of the answers to the last command, in inbox_

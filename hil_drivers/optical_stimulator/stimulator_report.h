@@ -25,7 +25,7 @@ struct StimulatorRow {
   std::int64_t image = 0;  ///< number of the exposure
   std::int64_t frame = 0;  ///< number of the picture in the frame strip
   std::int64_t tries = 1;  ///< images taken for it
-  std::int64_t stale = 0;  ///< tries that showed another picture
+  std::int64_t stale = 0;  ///< images of another picture or of an earlier trigger, refused
   std::int64_t packets_resent = 0, reconnects = 0;
   // Wall-clock times.
   double render_s = 0.0;          ///< scene to expected electrons to counts
@@ -44,7 +44,7 @@ void visit_columns(Row& row, Visitor& visit) {
   visit(ColumnName{"image", "number of the exposure"}, row.image);
   visit(ColumnName{"frame", "number of the picture in the frame strip"}, row.frame);
   visit(ColumnName{"tries", "images taken for it"}, row.tries);
-  visit(ColumnName{"stale", "of these, those that showed another picture"}, row.stale);
+  visit(ColumnName{"stale", "images of another picture or of an earlier trigger, refused"}, row.stale);
   visit(ColumnName{"packets_resent", "by the camera"}, row.packets_resent);
   visit(ColumnName{"reconnects", "to the camera"}, row.reconnects);
   visit(ColumnName{"render_s", "wall-clock time from the scene to the counts of the display"}, row.render_s);

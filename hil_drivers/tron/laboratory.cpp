@@ -332,6 +332,7 @@ std::map<std::string, double> WiredDevices::counts() const {
           {"capture_objects_occluded", number(capture.occluded)},
           {"capture_objects_frozen", number(capture.frozen)},
           {"camera_frames", number(parts_->frames)},
+          {"camera_images_stale", parts_->camera ? number(parts_->camera->stale_images()) : 0.0},
           {"camera_retries", number(parts_->retries)}};
 }
 

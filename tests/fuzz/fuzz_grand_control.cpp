@@ -44,7 +44,7 @@ class IdleEngine final : public bench::Engine {
   void stop() override { state_ = bench::EngineState::kStopped; }
   void sample(std::size_t, const TrajectorySample&) override {}
   [[nodiscard]] bench::VehicleReport report(std::size_t) const override { return {}; }
-  [[nodiscard]] TrajectorySample flown(std::size_t) const override { return {}; }
+  [[nodiscard]] TrajectorySample flown(std::size_t, fsw::Duration) const override { return {}; }
   [[nodiscard]] std::int64_t system_time_at_pps0_ms() const override { return 1; }
 
  private:

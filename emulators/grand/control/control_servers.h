@@ -22,8 +22,8 @@ enum class EngineState { kIdle, kConfigured, kArmed, kStreaming, kStopped, kErro
 
 /// State and counters of one vehicle.
 struct VehicleReport {
-  fsw::Duration time;           ///< end of the motion so far, since start
-  int extrapolation = 0;        ///< 0 deterministic, 1 non-deterministic (no sample for 1 s), 2 snap
+  fsw::Duration time;     ///< end of the motion so far, since start
+  int extrapolation = 0;  ///< 0 deterministic, 1 non-deterministic (the join of the last sample has ended), 2 snap
   double extrapolated_s = 0.0;  ///< time since the last sample
   std::uint64_t samples = 0, late = 0, doubled = 0, snaps = 0;
   std::uint64_t out_of_order = 0;  ///< older than the sample in use, ignored
@@ -57,8 +57,9 @@ class Engine {
   virtual void sample(std::size_t vehicle, const TrajectorySample& sample) = 0;
 
   [[nodiscard]] virtual VehicleReport report(std::size_t vehicle) const = 0;
-  /// Returns the motion at report().time: a generator sends it back as vehicle information.
-  [[nodiscard]] virtual TrajectorySample flown(std::size_t vehicle) const = 0;
+  /// Returns the motion at a time at most a block before report().time: a generator sends it back as vehicle
+  /// information.
+  [[nodiscard]] virtual TrajectorySample flown(std::size_t vehicle, fsw::Duration time) const = 0;
   /// Returns CLOCK_REALTIME, ms, at the PPS edge after which start() counts; 0 before it.
   [[nodiscard]] virtual std::int64_t system_time_at_pps0_ms() const = 0;
 
@@ -74,6 +75,9 @@ class Engine {
 
 enum class ControlProtocol { kSkydel, kSimgen, kTemplate };
 
+/// Version that the emulated generator states of itself.
+inline constexpr std::string_view kEmulatedVersion = "vbar_grand_bench (emulated)";
+
 struct ControlSettings {
   ControlProtocol protocol = ControlProtocol::kSkydel;
   /// Ports of control connections: one per vehicle for Skydel, and for a template whose datagrams are distinguished by
@@ -81,7 +85,7 @@ struct ControlSettings {
   std::vector<std::uint16_t> control_ports = {};
   /// Ports of samples: one per vehicle for Skydel; otherwise none, the UDP port has the number of the control port.
   std::vector<std::uint16_t> hil_ports = {};
-  std::uint32_t engine_latency_ms = 40;       ///< as reported by Skydel
+  std::uint32_t engine_latency_ms = 40;       ///< as reported by Skydel: advance of the engine before the radio
   std::uint32_t streaming_buffer_ms = 200;    ///< as reported by Skydel
   wire::TemplateFormat template_format = {};  ///< format of the template
 };

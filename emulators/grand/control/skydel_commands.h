@@ -22,7 +22,7 @@ class SkydelCommands {
 
   SkydelCommands(Engine& engine, const ControlSettings& settings, std::vector<std::uint16_t> hil_ports);
 
-  /// Executes a command of an instance. Returns the result, ErrorResult for anything that a real instance rejects;
+  /// Executes a command of an instance. Returns the result, FailureResult for anything that a real instance rejects;
   /// empty if `later` gives it.
   std::optional<Json> execute(std::size_t instance, const Json& command, const Answer& later);
 
@@ -54,19 +54,27 @@ class SkydelCommands {
     const Answer& later;
   };
   using Handler = std::optional<Json> (SkydelCommands::*)(const Call& call);
+  /// States of an instance in which a command is permitted, as the API documents them for each.
+  enum Permission : unsigned { kNoConfig = 1U, kIdle = 2U, kSimulating = 4U };
+  static constexpr unsigned kAlways = kNoConfig | kIdle | kSimulating;
   struct Command {
     std::string_view name;
+    unsigned permission;
     Handler handler;
   };
   static const std::vector<Command>& commands();
 
   // Handlers return the result or throw a Refusal.
   std::optional<Json> get_hil_port(const Call& call);
+  std::optional<Json> get_version(const Call& call);
   std::optional<Json> get_engine_latency(const Call& call);
+  std::optional<Json> set_engine_latency(const Call& call);
   std::optional<Json> get_streaming_buffer(const Call& call);
   std::optional<Json> new_config(const Call& call);
   std::optional<Json> set_modulation_target(const Call& call);
   std::optional<Json> change_signals(const Call& call);
+  std::optional<Json> enable_log(const Call& call);
+  std::optional<Json> set_log_rate(const Call& call);
   std::optional<Json> set_start_time(const Call& call);
   std::optional<Json> set_vehicle_trajectory(const Call& call);
   std::optional<Json> set_join(const Call& call);
@@ -87,10 +95,12 @@ class SkydelCommands {
   /// Adopts the engine's state, which may have stopped or restarted by itself.
   void follow_engine();
   [[nodiscard]] Instance& of(const Call& call) { return instances_[call.instance]; }
-  /// Returns the instance, which must have a configuration and be idle.
-  Instance& configurable(const Call& call);
+  void require_permission(std::size_t instance, const Command& command) const;
   void require_main(const Call& call) const;
-  void require_running(const Call& call) const;
+  /// Returns true for the main instance and its workers.
+  [[nodiscard]] bool takes_part(std::size_t index) const {
+    return index == 0 || instances_[index].role == Role::kWorker;
+  }
   /// Returns what an instance lacks before it can be armed; empty if nothing.
   [[nodiscard]] std::string missing(std::size_t index) const;
   [[nodiscard]] static Json success(const Call& call) { return wire::skydel_result("SuccessResult", call.command); }

@@ -99,7 +99,7 @@ class SkydelServer final : public ControlServers {
     try {
       name = wire::name_of(frame.json);
     } catch (const wire::WireError& error) {
-      return answer(connection, wire::skydel_error(frame.json, error.what()));
+      return answer(connection, wire::skydel_failure(frame.json, error.what()));
     }
     switch (fault_of(faults_, name, statistics_)) {
       case FaultEffect::kNoAnswer:
@@ -107,7 +107,7 @@ class SkydelServer final : public ControlServers {
       case FaultEffect::kClosing:
         return connection.close();
       case FaultEffect::kRefusal:
-        return answer(connection, wire::skydel_error(frame.json, faults_.refusal));
+        return answer(connection, wire::skydel_failure(frame.json, faults_.refusal));
       case FaultEffect::kNone:
         break;
     }
@@ -122,7 +122,7 @@ class SkydelServer final : public ControlServers {
   }
 
   void answer(Connection& connection, const wire::Json& result) {
-    if (wire::name_of(result) == "ErrorResult") ++statistics_.refused;
+    if (wire::name_of(result) == wire::kSkydelFailure) ++statistics_.refused;
     connection.send(wire::encode_result(result));
   }
 
@@ -156,13 +156,16 @@ class SkydelServer final : public ControlServers {
   void send_vehicle_info(std::size_t vehicle) {
     Port& port = ports_[vehicle];
     if (faults_.is_silent || !port.peer || !commands_->sends_vehicle_info(vehicle)) return;
-    const TrajectorySample flown = engine_.flown(vehicle);
+    // The time on the wire has whole milliseconds, in real time unlike that of the motion.
+    constexpr std::int64_t kNsPerMs = 1'000'000;
+    const std::int64_t time_ms = engine_.report(vehicle).time.ns / kNsPerMs;
+    const TrajectorySample flown = engine_.flown(vehicle, {time_ms * kNsPerMs});
     const fsw::Vector3& r = flown.position_ecef_m;
     if (r.isZero()) return;  // it has not been placed
     port.odometer_m = port.odometer_m < 0.0 ? 0.0 : port.odometer_m + (r - port.last_position_m).norm();
     port.last_position_m = r;
     wire::SkydelVehicleInfo info;
-    info.time_ms = static_cast<std::uint64_t>(engine_.report(vehicle).time.ns / 1'000'000);
+    info.time_ms = static_cast<std::uint64_t>(time_ms);
     info.position_ecef_m = r;
     info.yaw_pitch_roll = flown.yaw_pitch_roll;
     info.speed_mps = flown.velocity_ecef_mps.norm();

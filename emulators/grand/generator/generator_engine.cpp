@@ -16,6 +16,7 @@ using fsw::Duration;
 using fsw::GpsTime;
 
 constexpr std::chrono::milliseconds kTick{5};
+constexpr Duration kSilence = fsw::duration_of_seconds(1);  // of samples, that the terminal names
 // Before any command: the day of the GPS elements. Nothing is radiated and no message is heard before a start time has
 // been set.
 constexpr GpsTime kDefaultEpoch = twins::gnss::gps_time_of(twins::gnss::System::kGps, 1658, 4 * 86400);
@@ -117,6 +118,8 @@ std::string GeneratorEngine::start(Duration delay) {
   if (state_ != EngineState::kArmed)
     return fmt::format("The generator cannot be started: it is {}, not armed.", name_of(state_));
   zero_ = last_edge_ + on_the_wall(delay);
+  if (!is_lock_step())
+    for (const auto& vehicle : vehicles_) vehicle->motion().set_advance(scenario_.engine_latency);
   const auto orbits = std::make_shared<SatelliteOrbits>(constellation_, *start_time_);
   for (const auto& vehicle : vehicles_)
     vehicle->start(std::make_unique<Sky>(scenario_.sky, orbits, pattern_, scenario_.seed, vehicle->name()));
@@ -196,7 +199,7 @@ void GeneratorEngine::fly(std::size_t vehicle, Duration time) {
 
 void GeneratorEngine::report_extrapolation(std::size_t vehicle) {
   const VehicleMotion& motion = vehicles_[vehicle]->motion();
-  const bool is_missing = motion.is_defined() && !motion.is_deterministic();
+  const bool is_missing = motion.is_defined() && motion.age() > kSilence;
   if (is_missing && !warned_[vehicle])
     fmt::print(stderr, "vbar_grand_bench: {}: no sample for {:.1f} s, the motion is extrapolated\n",
                vehicles_[vehicle]->name(), fsw::seconds(motion.age()));
@@ -219,8 +222,8 @@ VehicleReport GeneratorEngine::report(std::size_t vehicle) const {
   return report;
 }
 
-TrajectorySample GeneratorEngine::flown(std::size_t vehicle) const {
-  return vehicles_[vehicle]->motion().flown();
+TrajectorySample GeneratorEngine::flown(std::size_t vehicle, Duration time) const {
+  return vehicles_[vehicle]->motion().flown(time);
 }
 
 std::optional<Duration> GeneratorEngine::time_of(std::size_t vehicle) const {
@@ -299,7 +302,7 @@ void GeneratorEngine::tick(Clock::time_point now) {
     if (now < edge) break;
     send_edge(edges_sent_, monotonic_ns(edge));
   }
-  const Duration time{of_the_generator(now - zero_).ns - scenario_.engine_latency.ns};
+  const Duration time = of_the_generator(now - zero_);
   if (time.ns < 0) {
     for (const auto& vehicle : vehicles_) vehicle->idle(elapsed);
   } else {

@@ -2,10 +2,10 @@
 // Emulated generator: vehicles are moved along the samples received, in lock-step or in real time.
 //
 // Lock-step: the arrival of a sample moves its vehicle exactly to the newest sample's time; nothing else advances it,
-// and no clock is read. Real time: generator time t is the host's CLOCK_MONOTONIC t after the start, and the computed
-// motion lags behind it by the engine's latency; a sample is late if the motion has passed its time. With a speed
-// factor, for tests of the emulator itself, all times of the generator and its receivers pass faster, edges, latencies
-// and bytes alike.
+// and no clock is read. Real time: generator time t, which is that of the radio, is the host's CLOCK_MONOTONIC t after
+// the start, and the motion has been computed in advance of it by the engine's latency: a sample takes effect from
+// there on. With a speed factor, for tests of the emulator itself, all times of the generator and its receivers pass
+// faster, edges, latencies and bytes alike.
 
 #include <chrono>
 #include <filesystem>
@@ -45,7 +45,7 @@ class GeneratorEngine final : public Engine {
   void stop() override;
   void sample(std::size_t vehicle, const TrajectorySample& sample) override;
   [[nodiscard]] VehicleReport report(std::size_t vehicle) const override;
-  [[nodiscard]] TrajectorySample flown(std::size_t vehicle) const override;
+  [[nodiscard]] TrajectorySample flown(std::size_t vehicle, fsw::Duration time) const override;
   [[nodiscard]] std::int64_t system_time_at_pps0_ms() const override { return system_time_at_pps0_ms_; }
 
   // Interface of the program and the faults.

@@ -118,7 +118,7 @@ struct Scenario {
   std::uint64_t seed = 1;
   Pace pace = Pace::kLockStep;
   double speed_factor = 1.0;                 ///< real time: generator time per time of the host's clock
-  fsw::Duration engine_latency{40'000'000};  ///< real time: lag of the motion behind the edges
+  fsw::Duration engine_latency{40'000'000};  ///< real time: advance of the motion before the radio
   fsw::Duration join{165'000'000};           ///< value until a command sets it
   fsw::Duration start_shift;                 ///< the radiated scenario's time minus the commanded one (a fault)
   double pps_jitter_ns = 0.0;                ///< one sigma of each edge

@@ -42,35 +42,43 @@ Reception VehicleMotion::receive(const TrajectorySample& sample) {
     ++counters_.rejected;
     return Reception::kRejected;
   }
-  const auto place =
-      std::lower_bound(pending_.begin(), pending_.end(), sample.time,
-                       [](const TrajectorySample& pending, Duration time) { return pending.time < time; });
-  const bool pending_twice = place != pending_.end() && place->time == sample.time;
-  if (pending_twice || (current_ && current_->time == sample.time)) {
+  const auto is_same = [&](const Pending& pending) { return pending.sample.time == sample.time; };
+  if (std::ranges::any_of(pending_, is_same) || (current_ && current_->time == sample.time)) {
     ++counters_.doubled;
     return Reception::kDoubled;
   }
-  if (current_ && sample.time < current_->time) {
+  const Duration from = std::max(sample.time, computed());
+  const auto replaces = [&](const Pending& pending) {
+    return pending.from <= from && pending.sample.time > sample.time;
+  };
+  if ((current_ && sample.time < current_->time) || std::ranges::any_of(pending_, replaces)) {
     ++counters_.out_of_order;
     return Reception::kOutOfOrder;
   }
-  newest_ = std::max(newest_, sample.time);
-  if (sample.time > now_) {
-    pending_.insert(place, sample);
-    if (!current_) use(pending_.front());  // nothing older exists: the first sample holds backwards too
-    return Reception::kAccepted;
-  }
-  const bool late = sample.time < now_;
+  const bool late = is_late(sample);
   if (late) ++counters_.late;
-  use(sample);
+  if (current_ && sample.time > newest_)
+    period_ = std::min(period_.value_or(span(newest_, sample.time)), span(newest_, sample.time));
+  newest_ = std::max(newest_, sample.time);
+  if (from > now_) {
+    const auto place = std::ranges::upper_bound(pending_, from, {}, &Pending::from);
+    pending_.insert(place, {sample, from});
+    if (!current_) use(sample);  // nothing older exists: the first sample holds backwards too
+  } else {
+    use(sample);
+  }
   return late ? Reception::kLate : Reception::kAccepted;
+}
+
+bool VehicleMotion::is_late(const TrajectorySample& sample) const {
+  return current_ && span(sample.time, computed()) > span(period_.value_or(Duration{}), join_);
 }
 
 void VehicleMotion::advance(Duration time) {
   std::size_t used = 0;
-  while (used < pending_.size() && pending_[used].time < time) {
-    now_ = std::max(now_, pending_[used].time);
-    use(pending_[used++]);
+  while (used < pending_.size() && pending_[used].from < time) {
+    now_ = std::max(now_, pending_[used].from);
+    use(pending_[used++].sample);
   }
   pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(used));
   now_ = std::max(now_, time);
@@ -92,13 +100,13 @@ MotionState VehicleMotion::at(Duration time) const {
   return state;
 }
 
-TrajectorySample VehicleMotion::flown() const {
+TrajectorySample VehicleMotion::flown(Duration time) const {
   TrajectorySample sample;
-  sample.time = now_;
+  sample.time = time;
   if (!current_) return sample;
-  const MotionState state = at(now_);
+  const MotionState state = at(time);
   sample = *current_;
-  sample.time = now_;
+  sample.time = time;
   sample.position_ecef_m = state.position;
   sample.velocity_ecef_mps = state.velocity;
   sample.acceleration_ecef_mps2 = state.acceleration;
@@ -120,7 +128,7 @@ bool VehicleMotion::take_snap() {
 }
 
 void VehicleMotion::use(const TrajectorySample& sample) {
-  if (current_ && current_->time == sample.time) return;
+  if (current_ && current_->time >= sample.time) return;
   if (!current_) {
     joined_ = {};
   } else {

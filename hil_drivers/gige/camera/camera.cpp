@@ -23,6 +23,9 @@ constexpr int kBuffers = 3;
 constexpr guint64 kSliceUs = 20'000;
 constexpr std::uint32_t kManufacturerInfoAddress = 0xA8, kManufacturerInfoBytes = 48;
 constexpr double kExposureTolerance = 0.01;
+// Bootstrap registers of GigE Vision.
+constexpr guint64 kTimestampControl = 0x0944, kTimestampHigh = 0x0948, kTimestampLow = 0x094C;
+constexpr guint32 kLatchTimestamp = 2;
 
 double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
@@ -116,6 +119,7 @@ class Camera::Connection {
                  "frame-retention", guint{500'000}, nullptr);
     payload_ = static_cast<std::size_t>(features().integer("PayloadSize"));
     for (int k = 0; k < kBuffers; ++k) arv_stream_push_buffer(stream_.get(), arv_buffer_new(payload_, nullptr));
+    has_clock_ = camera_time_ns().has_value();
     features().execute("AcquisitionStart");
     is_started_ = true;
   }
@@ -128,7 +132,33 @@ class Camera::Connection {
   }
 
   std::variant<Frame, NoFrame> take(const std::atomic<bool>& stop) {
-    discard_late_images();
+    auto result = take_triggered(stop);
+    is_image_pending_ = !std::holds_alternative<Frame>(result);
+    return result;
+  }
+
+  [[nodiscard]] std::int64_t stale_images() const { return stale_images_; }
+
+  [[nodiscard]] std::string transport() const {
+    return description(buffer_, delay_ns_, static_cast<std::size_t>(settings_.packet_size));
+  }
+
+ private:
+  std::variant<Frame, NoFrame> take_triggered(const std::atomic<bool>& stop) {
+    std::uint64_t earliest_ns = last_timestamp_ns_ + 1;
+    if (has_clock_) {
+      const std::optional<std::uint64_t> now_ns = camera_time_ns();
+      if (!now_ns) return control_failure("its clock cannot be latched");
+      earliest_ns = std::max(earliest_ns, *now_ns);
+    } else if (is_image_pending_) {
+      try {
+        restart();
+      } catch (const FeatureError& error) {
+        return control_failure(error.what());
+      }
+    }
+    discard_waiting_images();
+    const std::int64_t stale_before = stale_images_;
     guint64 resent_before = 0, missing = 0;
     arv_gv_stream_get_statistics(ARV_GV_STREAM(stream_.get()), &resent_before, &missing);
     const Clock::time_point begin = Clock::now();
@@ -141,8 +171,11 @@ class Camera::Connection {
         const std::uint64_t timestamp_ns = arv_buffer_get_timestamp(buffer);
         arv_stream_push_buffer(stream_.get(), buffer);
         if (auto* frame = std::get_if<Frame>(&result)) {
-          if (timestamp_ns != 0 && timestamp_ns <= last_timestamp_ns_)
-            return failure(NoFrame::Reason::kStale, "an image of an exposure before the trigger");
+          if (timestamp_ns != 0 && timestamp_ns < earliest_ns) {
+            ++stale_images_;
+            continue;
+          }
+          frame->stale_images = stale_images_ - stale_before;
           frame->timestamp_ns = last_timestamp_ns_ = timestamp_ns;
           guint64 resent = 0;
           arv_gv_stream_get_statistics(ARV_GV_STREAM(stream_.get()), &resent, &missing);
@@ -151,16 +184,14 @@ class Camera::Connection {
         }
         return result;
       }
-      if (seconds_since(begin) > limit_s)
-        return failure(NoFrame::Reason::kTimeout, fmt::format("no image within {:.1f} s of the trigger", limit_s));
+      if (seconds_since(begin) <= limit_s) continue;
+      if (stale_images_ > stale_before)
+        return failure(NoFrame::Reason::kStale,
+                       fmt::format("within {:.1f} s of the trigger only an image of an exposure before it", limit_s));
+      return failure(NoFrame::Reason::kTimeout, fmt::format("no image within {:.1f} s of the trigger", limit_s));
     }
   }
 
-  [[nodiscard]] std::string transport() const {
-    return description(buffer_, delay_ns_, static_cast<std::size_t>(settings_.packet_size));
-  }
-
- private:
   static void release(ObjectPtr<ArvDevice>& device, ObjectPtr<ArvStream>& stream, bool is_started) {
     stream.reset();
     if (is_started) {
@@ -258,6 +289,7 @@ class Camera::Connection {
     GlibError error;
     const guint64 frequency = arv_gv_device_get_timestamp_tick_frequency(ARV_GV_DEVICE(device_.get()), error.out());
     if (error || frequency == 0) throw FeatureError("its tick frequency cannot be read");
+    tick_frequency_hz_ = frequency;
     const double ticks = std::ceil(1e-9 * delay_ns_ * static_cast<double>(frequency));
     set.set_integer({"GevSCPD"}, static_cast<gint64>(ticks), ticks > 0.0 ? Need::kRequired : Need::kIfAvailable);
   }
@@ -274,18 +306,51 @@ class Camera::Connection {
     return bytes / 100e6 + bytes / data * 1e-9 * delay_ns_;
   }
 
-  void discard_late_images() {
-    while (ArvBuffer* const buffer = arv_stream_try_pop_buffer(stream_.get()))
+  /// Returns the camera's present time, in the unit of its time stamps; empty: it has no clock that can be latched.
+  std::optional<std::uint64_t> camera_time_ns() {
+    GlibError error;
+    arv_device_write_register(device_.get(), kTimestampControl, kLatchTimestamp, error.out());
+    if (error) return std::nullopt;
+    std::uint64_t ticks = 0;
+    for (const guint64 address : {kTimestampHigh, kTimestampLow}) {
+      guint32 word = 0;
+      arv_device_read_register(device_.get(), address, &word, error.out());
+      if (error) return std::nullopt;
+      ticks = ticks << 32U | word;
+    }
+    if (ticks == 0) return std::nullopt;
+    // As Aravis converts the stamps of images.
+    constexpr std::uint64_t kNsPerSecond = 1'000'000'000;
+    return ticks / tick_frequency_hz_ * kNsPerSecond + ticks % tick_frequency_hz_ * kNsPerSecond / tick_frequency_hz_;
+  }
+
+  /// Ends what is under way: the new stream has another port.
+  void restart() {
+    GlibError ignored;
+    arv_device_execute_command(device_.get(), "AcquisitionStop", ignored.out());
+    is_started_ = false;
+    stream_.reset();
+    start();
+  }
+
+  void discard_waiting_images() {
+    while (ArvBuffer* const buffer = arv_stream_try_pop_buffer(stream_.get())) {
+      if (arv_buffer_get_status(buffer) == ARV_BUFFER_STATUS_SUCCESS) ++stale_images_;
       arv_stream_push_buffer(stream_.get(), buffer);
+    }
   }
 
   std::optional<NoFrame> trigger() {
     GlibError error;
     arv_device_execute_command(device_.get(), "TriggerSoftware", error.out());
     if (!error) return std::nullopt;
+    return control_failure(fmt::format("it does not take the trigger: {}", error.text()));
+  }
+
+  [[nodiscard]] NoFrame control_failure(const std::string& text) const {
     if (!arv_gv_device_is_controller(ARV_GV_DEVICE(device_.get())))
       return failure(NoFrame::Reason::kNotOwner, "control of it is lost");
-    return failure(NoFrame::Reason::kNoAnswer, fmt::format("it does not take the trigger: {}", error.text()));
+    return failure(NoFrame::Reason::kNoAnswer, text);
   }
 
   std::variant<Frame, NoFrame> read(ArvBuffer* buffer) {
@@ -343,7 +408,11 @@ class Camera::Connection {
   double delay_ns_ = 0.0;
   std::size_t payload_ = 0;
   PixelPadding padding_;
+  std::uint64_t tick_frequency_hz_ = 1;
   std::uint64_t last_timestamp_ns_ = 0;  ///< camera time of the last whole image
+  std::int64_t stale_images_ = 0;
+  bool has_clock_ = false;         ///< that can be latched
+  bool is_image_pending_ = false;  ///< the last trigger has had no image
   bool is_started_ = false;
 };
 
@@ -396,7 +465,12 @@ void Camera::reconnect() {
 }
 
 void Camera::close() noexcept {
+  if (connection_) stale_before_ += connection_->stale_images();
   connection_.reset();
+}
+
+std::int64_t Camera::stale_images() const {
+  return stale_before_ + (connection_ ? connection_->stale_images() : 0);
 }
 
 void Camera::stop() noexcept {

@@ -1,6 +1,10 @@
 #pragma once
 // GigE Vision camera by its IP address (Aravis 0.8): settings set and read back, software trigger, whole images only.
 // Nothing is broadcast and no camera is searched for.
+//
+// An image belongs to its trigger: the camera's clock is latched before each trigger (GigE Vision, registers 0944h,
+// 0948h, 094Ch), and an image with an earlier time stamp is refused and counted. For a camera without such a clock the
+// stamps must rise, and after a trigger without an image the acquisition is restarted, which ends what is under way.
 
 #include <cstdint>
 #include <memory>
@@ -28,6 +32,7 @@ struct Frame {
   std::vector<std::uint16_t> dn;  ///< right-aligned, rows of width
   int bits = 0;                   ///< resolution of the converter
   std::int64_t packets_resent = 0;
+  std::int64_t stale_images = 0;   ///< images of other triggers that arrived before this one, refused
   double receive_s = 0.0;          ///< wall clock, from the trigger
   std::uint64_t timestamp_ns = 0;  ///< clock of the camera; 0: it states none
 };
@@ -40,7 +45,7 @@ struct NoFrame {
     kNoAnswer,    ///< to the trigger: the camera is gone
     kNotOwner,    ///< another program has taken the camera, or its heartbeat was missed: reconnect()
     kInvalid,     ///< an image of another size or format
-    kStale,       ///< an image whose time stamp is not later than that of the image before
+    kStale,       ///< only images that were exposed before the trigger came
     kStopped,     ///< stop() was called
   };
   Reason reason = Reason::kTimeout;
@@ -95,6 +100,9 @@ class Camera {
   /// after.
   void stop() noexcept;
 
+  /// Number of images of other triggers refused so far, late ones that were waiting at a trigger included.
+  [[nodiscard]] std::int64_t stale_images() const;
+
   [[nodiscard]] bool is_open() const;
   [[nodiscard]] const Identity& identity() const;
   [[nodiscard]] const Settings& settings() const;
@@ -105,6 +113,7 @@ class Camera {
   class Connection;
   Settings settings_;
   Identity identity_;
+  std::int64_t stale_before_ = 0;  ///< number of earlier connections
   std::unique_ptr<Connection> connection_;
   struct Stop;
   std::unique_ptr<Stop> stop_;

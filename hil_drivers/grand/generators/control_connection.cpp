@@ -84,7 +84,7 @@ wire::SkydelFrame SkydelControl::next_frame(std::string_view command, io::Clock:
 
 Json SkydelControl::call(std::string_view name, const Json& fields, std::string_view expected,
                          std::chrono::milliseconds more_time) {
-  const std::string uuid = fmt::format("{{00000000-0000-0000-0000-{:012x}}}", ++commands_);
+  const std::string uuid = fmt::format("00000000-0000-4000-8000-{:012x}", ++commands_);
   connection_.send(name, wire::encode_command(wire::skydel_command(name, uuid, fields)));
   const auto deadline = connection_.answer_deadline() + more_time;
   for (;;) {
@@ -92,9 +92,10 @@ Json SkydelControl::call(std::string_view name, const Json& fields, std::string_
     if (frame.kind != wire::SkydelFrameKind::kResult) fail(name, "the answer is not a result");
     try {
       // The answer to a command that was given up.
-      if (frame.json.contains("CmdUuid") && wire::text_field(frame.json, "CmdUuid") != uuid) continue;
+      if (wire::related_uuid(frame.json) != uuid) continue;
       const std::string result = wire::name_of(frame.json);
-      if (result == "ErrorResult") fail(name, fmt::format("answered ErrorResult: {}", error_message(frame.json)));
+      if (result == wire::kSkydelFailure)
+        fail(name, fmt::format("answered {}: {}", wire::kSkydelFailure, error_message(frame.json)));
       if (result != expected) fail(name, fmt::format("answered {} instead of {}", result, expected));
     } catch (const wire::WireError& error) {
       fail(name, error.what());

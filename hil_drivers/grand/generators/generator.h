@@ -68,6 +68,10 @@ class Generator {
   /// Requests the state; about once a second in real time.
   virtual GeneratorState state(std::size_t vehicle) = 0;
 
+  /// Returns true if the generator has named itself an emulation since prepare(); false if its protocol has no question
+  /// for it.
+  [[nodiscard]] virtual bool is_emulated() const { return false; }
+
   /// Ends the radiation. Does not throw.
   virtual void stop() noexcept = 0;
 };

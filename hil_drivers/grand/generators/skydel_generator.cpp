@@ -62,6 +62,7 @@ class SkydelGenerator final : public Generator {
   void send(std::size_t vehicle, const TrajectorySample& sample) override;
   std::optional<fsw::Duration> wait_for(std::size_t vehicle, fsw::Duration time, SteadyTime deadline) override;
   GeneratorState state(std::size_t vehicle) override;
+  [[nodiscard]] bool is_emulated() const override { return is_emulated_; }
   void stop() noexcept override;
 
  private:
@@ -80,20 +81,22 @@ class SkydelGenerator final : public Generator {
   GeneratorPlan plan_;
   SkydelSettings settings_;
   std::vector<Instance> instances_;
-  bool is_armed_ = false;
+  bool is_armed_ = false, is_emulated_ = false;
 };
 
 void SkydelGenerator::connect(std::size_t index) {
   Instance& instance = instances_.emplace_back();
   instance.control = std::make_unique<SkydelControl>(plan_.host, plan_.control_ports[index], settings_.answer_limit);
   SkydelControl& control = *instance.control;
+  const Json version = control.call("GetVersion", Json::object(), "VersionResult");
   const Json answer = control.call("GetHilPort", Json::object(), "HilPortResult");
   try {
+    is_emulated_ = is_emulated_ || wire::text_field(version, "Version").find("emulated") != std::string::npos;
     const auto reported = static_cast<std::uint16_t>(wire::integer_field(answer, "Port", 1, 65535));
     const auto port = plan_.hil_port == 0 ? reported : static_cast<std::uint16_t>(plan_.hil_port + index);
     instance.hil = std::make_unique<io::UdpSocket>(plan_.host, port, std::uint16_t{0}, wire::kSkydelMaxHilBytes);
   } catch (const std::runtime_error& error) {
-    control.fail("GetHilPort", error.what());
+    control.fail("connecting", error.what());
   }
   send_datagram(instance, wire::encode_hello());
 }
@@ -131,8 +134,9 @@ void SkydelGenerator::configure(std::size_t index) {
                                                    {"Band", band},
                                                    {"Signal", signals},
                                                    {"Gain", -1},
-                                                   {"GPU", false},
-                                                   {"Id", id}});
+                                                   {"GaussianNoise", false},
+                                                   {"Id", id},
+                                                   {"CentralFrequency", nullptr}});
   }
   control.call("SetGpsStartTime", {{"Start", wire::skydel_date(plan_.start)}});
   control.call("SetVehicleTrajectory", {{"Type", "HIL"}});

@@ -1,5 +1,6 @@
 #include "hil_drivers/grand/wire/skydel.h"
 
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -103,16 +104,23 @@ Json skydel_command(std::string_view name, std::string_view uuid, const Json& fi
 }
 
 Json skydel_result(std::string_view name, const Json& command, const Json& fields) {
+  static std::atomic<std::uint64_t> results{0};
   Json result = fields;
   result["CmdName"] = name;
-  const auto uuid = command.find("CmdUuid");
-  if (uuid != command.end()) result["CmdUuid"] = *uuid;
+  result["CmdUuid"] = fmt::format("ffffffff-0000-4000-8000-{:012x}", ++results);
   result["RelatedCommand"] = text_of_json(command);
   return result;
 }
 
-Json skydel_error(const Json& command, std::string_view message) {
-  return skydel_result("ErrorResult", command, {{"ErrorMsg", message}});
+Json skydel_failure(const Json& command, std::string_view message) {
+  return skydel_result(kSkydelFailure, command, {{"ErrorMsg", message}});
+}
+
+std::string related_uuid(const Json& result) {
+  const std::string text = text_field(result, "RelatedCommand");
+  const std::span<const char> characters(text);
+  const std::span bytes(reinterpret_cast<const std::uint8_t*>(characters.data()), characters.size());
+  return text_field(parse_object(bytes, name_of(result) + ": RelatedCommand"), "CmdUuid");
 }
 
 Bytes encode_command(const Json& command) {

@@ -25,9 +25,9 @@ enum class SkydelFrameKind : std::uint8_t { kCommand = 0, kResult = 1, kApiVersi
 inline constexpr std::uint32_t kSkydelApiVersion = 49;
 
 // States of a simulator as its API numbers them.
-inline constexpr int kSkydelStateIdle = 1, kSkydelStateStarted = 2, kSkydelStateError = 3;
-inline constexpr int kSkydelSubStateIdleWithoutConfig = 1, kSkydelSubStateIdle = 2, kSkydelSubStateStreaming = 5,
-                     kSkydelSubStateArmed = 8, kSkydelSubStateError = 10, kSkydelSubStateSyncStart = 13;
+inline constexpr int kSkydelStateNone = 0, kSkydelStateIdle = 1, kSkydelStateStarted = 2, kSkydelStateError = 3;
+inline constexpr int kSkydelSubStateNone = 0, kSkydelSubStateConfigNotValid = 1, kSkydelSubStateConfigValid = 2,
+                     kSkydelSubStateStreaming = 5, kSkydelSubStateArmed = 8, kSkydelSubStateError = 10;
 inline constexpr std::string_view kSkydelStreaming = "Streaming RF";
 
 /// Frame of either direction.
@@ -39,9 +39,13 @@ struct SkydelFrame {
 
 /// Returns a command; `fields` is an object.
 Json skydel_command(std::string_view name, std::string_view uuid, const Json& fields = Json::object());
-/// Returns a result to `command`.
+/// Returns a result to `command`. As in the published API a result has a uuid of its own; the command's is that of the
+/// text in RelatedCommand.
 Json skydel_result(std::string_view name, const Json& command, const Json& fields = Json::object());
-Json skydel_error(const Json& command, std::string_view message);
+inline constexpr std::string_view kSkydelFailure = "FailureResult";
+Json skydel_failure(const Json& command, std::string_view message);
+/// Returns the uuid of the command that a result answers. Throws WireError.
+std::string related_uuid(const Json& result);
 
 // Frames. Throw WireError if they do not fit into 65535 bytes.
 Bytes encode_command(const Json& command);

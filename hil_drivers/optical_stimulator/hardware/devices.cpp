@@ -48,14 +48,17 @@ class GigeFrameCamera final : public FrameCamera {
 
   CameraFrame take() override {
     gige::NoFrame last;
+    const std::int64_t stale_before = camera_.stale_images();
     for (int k = 1; k <= tries_; ++k) {
       auto result = camera_.take();
       if (auto* const frame = std::get_if<gige::Frame>(&result))
-        return {std::move(frame->dn), static_cast<int>(frame->packets_resent), k, frame->receive_s};
+        return {std::move(frame->dn), static_cast<int>(frame->packets_resent), k, frame->receive_s,
+                static_cast<int>(camera_.stale_images() - stale_before)};
       last = std::get<gige::NoFrame>(result);
       using enum gige::NoFrame::Reason;
-      // Another trigger helps against lost packets only.
-      if (last.reason != kTimeout && last.reason != kIncomplete && last.reason != kInvalid) break;
+      // Another trigger helps against lost packets and late images only.
+      if (last.reason != kTimeout && last.reason != kIncomplete && last.reason != kInvalid && last.reason != kStale)
+        break;
     }
     throw std::runtime_error(last.text);
   }

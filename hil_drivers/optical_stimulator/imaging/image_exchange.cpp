@@ -73,6 +73,7 @@ CameraFrame Exchange::take_frame(ExchangedImage& image) {
       image.packets_resent += frame.packets_resent;
       image.receive_s += frame.receive_s;
       image.tries += frame.tries - 1;
+      image.stale += frame.stale;
       return frame;
     } catch (const std::runtime_error& error) {
       if (is_cancelled_ || image.reconnects > 0) throw;

@@ -31,6 +31,7 @@ struct CameraFrame {
   int packets_resent = 0;
   int tries = 1;           ///< triggers until it was whole
   double receive_s = 0.0;  ///< wall clock, from the trigger
+  int stale = 0;           ///< images of earlier triggers, refused
 };
 
 class FrameCamera {
@@ -63,7 +64,7 @@ struct ExchangedImage {
   std::vector<std::uint16_t> dn;  ///< camera's region below the strip
   std::uint16_t frame = 0;        ///< number of the picture
   int tries = 1;                  ///< images taken for it
-  int stale = 0;                  ///< tries that showed another picture
+  int stale = 0;                  ///< images of another picture or of an earlier trigger, refused
   int packets_resent = 0;
   int reconnects = 0;
   double brightness = 0.0;               ///< brightness of the strip, relative to the calibration

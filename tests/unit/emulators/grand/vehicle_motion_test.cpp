@@ -90,16 +90,54 @@ TEST(VehicleMotion, JoinMeetsValueAndTwoDerivativesAtBothEnds) {
   }
 }
 
+// Samples of 10 Hz and a join of 165 ms leave 65 ms for latency and network together.
 TEST(VehicleMotion, LateSampleIsUsedFromNowOnAndCounted) {
   VehicleMotion motion(kJoin);
   motion.receive(sample_in_orbit(0.0));
-  motion.advance(ms(150));
+  motion.receive(sample_in_orbit(0.1));
+  motion.advance(ms(265));
+  EXPECT_EQ(motion.receive(sample_in_orbit(0.2)), Reception::kAccepted);
+  motion.advance(ms(366));
   const Vector3 offset(0.0, 0.0, 0.01);
-  EXPECT_EQ(motion.receive(sample_in_orbit(0.1, offset)), Reception::kLate);
+  EXPECT_EQ(motion.receive(sample_in_orbit(0.3, offset)), Reception::kLate);
   EXPECT_EQ(motion.counters().late, 1U);
-  EXPECT_LT(error_mm(motion, 0.15), 1e-4);           // nothing has changed at its reception
-  EXPECT_LT(error_mm(motion, 0.315, offset), 1e-4);  // joined after 165 ms
-  EXPECT_GT(error_mm(motion, 0.314, Vector3::Zero()), 9.0);
+  EXPECT_LT(error_mm(motion, 0.366), 1e-4);          // nothing has changed at its reception
+  EXPECT_LT(error_mm(motion, 0.531, offset), 1e-4);  // joined after 165 ms
+  EXPECT_GT(error_mm(motion, 0.530, Vector3::Zero()), 9.0);
+}
+
+// Skydel's published example: 15 ms between samples, latency 40 ms, join 65 ms. Every sample that arrives within 10 ms
+// keeps the motion deterministic; one that is lost does not.
+TEST(VehicleMotion, StateFollowsLatencyPeriodAndJoin) {
+  VehicleMotion motion(ms(65));
+  motion.set_advance(ms(40));
+  motion.receive(sample_in_orbit(0.0));
+  for (int k = 1; k <= 20; ++k) {
+    motion.advance(ms(15 * k + 9));
+    EXPECT_TRUE(motion.is_deterministic()) << k;
+    EXPECT_EQ(motion.receive(sample_in_orbit(0.015 * k)), Reception::kAccepted);
+  }
+  motion.advance(ms(15 * 22 - 1));  // the sample of 315 ms is lost
+  EXPECT_FALSE(motion.is_deterministic());
+  EXPECT_EQ(motion.receive(sample_in_orbit(0.330)), Reception::kAccepted);
+  EXPECT_TRUE(motion.is_deterministic());
+  EXPECT_EQ(motion.counters().late, 0U);
+  motion.advance(ms(345 + 12));
+  EXPECT_EQ(motion.receive(sample_in_orbit(0.345)), Reception::kLate);
+}
+
+// What is computed does not change any more: a sample takes effect after the engine's latency.
+TEST(VehicleMotion, ComputedMotionRemains) {
+  VehicleMotion motion(kJoin);
+  motion.set_advance(ms(40));
+  motion.receive(sample_in_orbit(0.0));
+  motion.advance(ms(100));
+  const Vector3 offset(0.0, 0.0, 0.01);
+  motion.receive(sample_in_orbit(0.1, offset));
+  motion.advance(ms(140));
+  EXPECT_LT(error_mm(motion, 0.14), 1e-4);
+  motion.advance(ms(306));
+  EXPECT_LT(error_mm(motion, 0.306, offset), 1e-4);
 }
 
 TEST(VehicleMotion, DoubledAndOldSamplesAreIgnoredAndCounted) {
@@ -135,9 +173,9 @@ TEST(VehicleMotion, MotionBeyondTenMetresJumps) {
 TEST(VehicleMotion, StateAndRadiationFollowTheAgeOfTheLastSample) {
   VehicleMotion motion(kJoin);
   motion.receive(sample_in_orbit(0.0));
-  motion.advance(ms(1000));
+  motion.advance(ms(165));
   EXPECT_TRUE(motion.is_deterministic());
-  motion.advance(ms(1001));
+  motion.advance(ms(166));
   EXPECT_FALSE(motion.is_deterministic());
   motion.advance(ms(5000));
   EXPECT_TRUE(motion.is_radiated());

@@ -213,16 +213,55 @@ TEST(GigeCameraFaults, FrameThatIsLostTimesOutAndTheNextOneComes) {
 
 TEST(GigeCameraFaults, FrameOlderThanTheTriggerIsNotAnImage) {
   RunningDevice device;
-  Camera camera(settings_for(device));
+  Camera::Settings settings = settings_for(device);
+  settings.timeout_s = 0.3;
+  Camera camera(settings);
   camera.open();
   const Frame first = taken(camera);
   device.with([](Device& one) { one.repeat_frames(1); });
   const auto result = camera.take();
   EXPECT_EQ(reason_of(result), NoFrame::Reason::kStale);
-  EXPECT_THAT(std::get<NoFrame>(result).text, HasSubstr("before the trigger"));
+  EXPECT_THAT(std::get<NoFrame>(result).text, HasSubstr("only an image of an exposure before it"));
+  EXPECT_EQ(camera.stale_images(), 1);
   const Frame third = taken(camera);
   EXPECT_EQ(third.dn, picture_of(camera, 2).dn);
   EXPECT_GT(third.timestamp_ns, first.timestamp_ns);
+}
+
+// Each image comes once more, after the next trigger and before its image: late, doubled and in the wrong order. The
+// own time stamp of such an image is later than that of any image accepted before.
+TEST(GigeCameraFaults, OfAThousandLateImagesNoneIsAccepted) {
+  RunningDevice device;
+  Camera camera(settings_for(device));
+  camera.open();
+  constexpr int kImages = 1001;
+  device.with([](Device& one) { one.delay_frames(kImages, false); });
+  std::int64_t refused = 0;
+  for (int number = 0; number < kImages; ++number) {
+    const Frame frame = taken(camera);
+    ASSERT_EQ(frame.dn, picture_of(camera, number).dn) << number;
+    refused += frame.stale_images;
+  }
+  EXPECT_EQ(camera.stale_images(), kImages - 1);
+  EXPECT_EQ(refused, kImages - 1);
+  EXPECT_EQ(device.statistics().acquisition.frames_delayed, kImages);
+}
+
+// Nothing but images of the trigger before.
+TEST(GigeCameraFaults, ImagesAfterTheNextTriggerAreRefused) {
+  RunningDevice device;
+  Camera::Settings settings = settings_for(device);
+  settings.timeout_s = 0.1;
+  Camera camera(settings);
+  camera.open();
+  device.with([](Device& one) { one.delay_frames(5, true); });
+  EXPECT_EQ(reason_of(camera.take()), NoFrame::Reason::kTimeout);
+  for (int k = 0; k < 4; ++k) EXPECT_EQ(reason_of(camera.take()), NoFrame::Reason::kStale);
+  const Frame frame = taken(camera);
+  EXPECT_EQ(frame.dn, picture_of(camera, 5).dn);
+  EXPECT_EQ(camera.stale_images(), 5);
+  camera.reconnect();
+  EXPECT_EQ(camera.stale_images(), 5);
 }
 
 TEST(GigeCameraFaults, FrameWithHolesIsNotAnImage) {

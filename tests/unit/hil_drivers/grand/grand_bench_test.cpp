@@ -29,6 +29,7 @@ struct Stage {
   std::vector<std::vector<TrajectorySample>> samples;
   std::optional<fsw::Duration> stuck_at;
   GeneratorState state{"Streaming RF", true};
+  bool is_emulated = false;
 };
 Stage* stage = nullptr;
 
@@ -49,6 +50,7 @@ class FakeGenerator final : public Generator {
     return stage->stuck_at ? std::min(*stage->stuck_at, time) : time;
   }
   GeneratorState state(std::size_t) override { return stage->state; }
+  [[nodiscard]] bool is_emulated() const override { return stage->is_emulated; }
   void stop() noexcept override { stage->calls.push_back("stop"); }
 };
 
@@ -154,6 +156,16 @@ TEST_F(GrandBenchTest, SendsEachSampleOnceFromTheStartOn) {
   const auto& figures = record_.summary.testbeds.at("grand");
   EXPECT_EQ(std::get<std::string>(figures.at("pace")), "lock_step");
   EXPECT_EQ(std::get<std::string>(figures.at("bench")), "hardware");
+}
+
+// An emulated bench that was started by hand names itself: no process of this run says so.
+TEST_F(GrandBenchTest, IsEmulatedByWhatTheDevicesState) {
+  stage_.is_emulated = true;
+  const auto bench = started();
+  bench->begin(record_, {});
+  for (const auto& source : sources_) source->stop(twins::StopReason::kCompleted);
+  bench->finish();
+  EXPECT_EQ(std::get<std::string>(record_.summary.testbeds.at("grand").at("bench")), "emulated");
 }
 
 TEST_F(GrandBenchTest, ConfiguresEpochsWithRespectToTheFlightSteps) {

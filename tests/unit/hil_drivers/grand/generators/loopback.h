@@ -66,8 +66,12 @@ class FakeEngine final : public bench::Engine {
   }
   void sample(std::size_t vehicle, const TrajectorySample& sample) override;
   [[nodiscard]] bench::VehicleReport report(std::size_t vehicle) const override { return reports[vehicle]; }
-  [[nodiscard]] TrajectorySample flown(std::size_t vehicle) const override {
-    return samples[vehicle].empty() ? TrajectorySample{} : samples[vehicle].back();
+  /// The last sample, moved along its velocity.
+  [[nodiscard]] TrajectorySample flown(std::size_t vehicle, fsw::Duration time) const override {
+    if (samples[vehicle].empty()) return {};
+    TrajectorySample sample = samples[vehicle].back();
+    sample.position_ecef_m += fsw::seconds({time.ns - sample.time.ns}) * sample.velocity_ecef_mps;
+    return sample;
   }
   [[nodiscard]] std::int64_t system_time_at_pps0_ms() const override { return pps0_ms; }
 

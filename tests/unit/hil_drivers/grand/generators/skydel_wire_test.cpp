@@ -33,10 +33,26 @@ TEST(SkydelControl, ACommandIsAFrameOfJsonWithANul) {
 
 TEST(SkydelControl, AResultHasItsLengthInsideTheFrame) {
   const std::string json =
-      R"({"CmdName":"HilPortResult","CmdUuid":"{7}","Port":4821,"RelatedCommand":"{\"CmdName\":\"G\",\"CmdUuid\":\"{7}\"}"})";
-  const Bytes bytes = encode_result(skydel_result("HilPortResult", skydel_command("G", "{7}"), {{"Port", 4821}}));
+      R"({"CmdName":"HilPortResult","CmdUuid":"{8}","Port":4821,"RelatedCommand":"{\"CmdName\":\"G\",\"CmdUuid\":\"{7}\"}"})";
+  Json result = skydel_result("HilPortResult", skydel_command("G", "{7}"), {{"Port", 4821}});
+  result["CmdUuid"] = "{8}";
+  const Bytes bytes = encode_result(result);
   const auto length = static_cast<std::uint8_t>(json.size() + 1);
   EXPECT_EQ(bytes, Bytes({static_cast<std::uint8_t>(length + 5), 0, 1, length, 0, 0, 0}) + text(json) + hex("00"));
+}
+
+// CommandResult of the published clients: a uuid of its own, that of the command inside RelatedCommand.
+TEST(SkydelControl, AResultBelongsToTheCommandInsideIt) {
+  const Json command = skydel_command("GetHilPort", "{7}");
+  const Json one = skydel_result("HilPortResult", command), other = skydel_failure(command, "busy");
+  EXPECT_EQ(related_uuid(one), "{7}");
+  EXPECT_NE(text_field(one, "CmdUuid"), "{7}");
+  EXPECT_NE(text_field(one, "CmdUuid"), text_field(other, "CmdUuid"));
+  EXPECT_EQ(name_of(other), "FailureResult");
+  EXPECT_EQ(text_field(other, "ErrorMsg"), "busy");
+  EXPECT_THROW(static_cast<void>(related_uuid(command)), WireError);
+  EXPECT_THROW(static_cast<void>(related_uuid(skydel_command("R", "{1}", {{"RelatedCommand", "GetHilPort"}}))),
+               WireError);
 }
 
 TEST(SkydelControl, AStreamIsCutIntoFramesWhereverItIsSplit) {
@@ -53,7 +69,7 @@ TEST(SkydelControl, AStreamIsCutIntoFramesWhereverItIsSplit) {
     EXPECT_EQ(found[0].api_version, 3U);
     EXPECT_EQ(name_of(found[1].json), "New");
     EXPECT_EQ(found[2].kind, SkydelFrameKind::kResult);
-    EXPECT_EQ(text_field(found[2].json, "CmdUuid"), "{1}");
+    EXPECT_EQ(related_uuid(found[2].json), "{1}");
   }
 }
 
