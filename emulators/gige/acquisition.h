@@ -185,7 +185,7 @@ class Acquisition {
   bool is_acquiring_ = false;
   bool is_exposing_ = false;
   std::shared_ptr<int> run_ =
-      std::make_shared<int>(0);  ///< replaced by start and stop, so that what was begun before is dropped
+      std::make_shared<int>(0);  ///< replaced by start and stop, which drops what had started before
   double exposure_factor_ = 1.0;
   int ignored_triggers_ = 0, lost_frames_ = 0, repeated_frames_ = 0;
   std::shared_ptr<const Frame> last_frame_;  ///< that was sent
