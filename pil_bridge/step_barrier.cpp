@@ -25,7 +25,7 @@ std::optional<std::string> board_error(const FrameView& frame) {
   return text.substr(kBoardErrorPrefix.size());
 }
 
-/// Checks an answer of a session that was begun: throws SessionLost if the board says that it has ended.
+/// Checks an answer of a session that was opened: throws SessionLost if the board says that it has ended.
 void check_session(const FrameView& frame) {
   if (frame.header.type != FrameType::kHelloAck) return;
   if (const auto error = board_error(frame)) throw SessionLost("the board has lost its session: " + *error);

@@ -64,7 +64,8 @@ class HostLine {
   std::filesystem::path link_;
   Listener listener_;
   std::optional<io::Pty> pty_;
-  std::shared_ptr<boost::asio::posix::stream_descriptor> stream_;  ///< of the master; handlers hold it weakly
+  std::shared_ptr<boost::asio::posix::stream_descriptor>
+      stream_;  ///< descriptor of the master; handlers hold it weakly
   std::vector<std::uint8_t> waiting_;
   bool waits_for_room_ = false;
   std::uint64_t bytes_lost_ = 0;

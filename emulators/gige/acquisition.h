@@ -193,7 +193,7 @@ class Acquisition {
   bool is_acquiring_ = false;
   bool is_exposing_ = false;
   std::shared_ptr<int> run_ =
-      std::make_shared<int>(0);  ///< replaced by start and stop, so that what was begun before is dropped
+      std::make_shared<int>(0);  ///< replaced by start and stop, which drops what had started before
   double exposure_factor_ = 1.0;
   int ignored_triggers_ = 0, lost_frames_ = 0, repeated_frames_ = 0, delayed_frames_ = 0;
   bool delays_all_ = false;

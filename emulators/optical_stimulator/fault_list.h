@@ -1,5 +1,5 @@
 #pragma once
-// Faults of a session: begun when they are due, in effect for a number of exposures or seconds, acknowledged when
+// Faults of a session: started when they are due, in effect for a number of exposures or seconds, acknowledged when
 // they have taken effect, on the control line and as one line of JSON in a file.
 
 #include <cstdint>

@@ -12,18 +12,18 @@ namespace {
 constexpr std::size_t kCoarseTimes = 12;
 static_assert(3 * kCoarseTimes <= kMaxActive);
 constexpr std::size_t kMaxAdded = 10;  ///< impulses added to the active set at once
-constexpr double kMinPivot = 1e-9;     ///< of the equilibrated gramian; windows under about 0.1 s fall below
+constexpr double kMinPivot = 1e-9;     ///< pivot of the equilibrated gramian; windows under about 0.1 s fall below
 constexpr double kMinSpan = 1e-3;      ///< pivot of the active effects' gramian below which none is dropped
 constexpr double kDropMargin = 0.01;   ///< impulses whose contact is lower than 1 by this leave the active set
-constexpr double kGapShare = 1e-3;     ///< of the cost tolerance: relative gap of each active set's program
-constexpr double kProgress = 1e-2;     ///< of the cost tolerance: relative decrease that counts as progress
+constexpr double kGapShare = 1e-3;     ///< relative gap of each active set's program, in cost tolerances
+constexpr double kProgress = 1e-2;     ///< relative decrease that counts as progress, likewise
 constexpr double kNoBound = 1e300;
-constexpr double kMaxResidual = 1e-10;  ///< of the impulses found, |target| = 1
+constexpr double kMaxResidual = 1e-10;  ///< residual of the impulses found, |target| = 1
 
 /// The state in which the coarse times' gramian is the identity and |target| = 1.
 struct Scaling {
   Matrix6 from_state = Matrix6::Identity();  ///< whitening transformation
-  double target_norm = 1.0;                  ///< of the whitened target: unit of dv inside the program
+  double target_norm = 1.0;                  ///< norm of the whitened target: unit of dv inside the program
 };
 
 Status check(const ImpulseGrid& grid, const Vector6& target, const PrimerSettings& settings) {

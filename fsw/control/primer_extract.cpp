@@ -10,8 +10,8 @@ namespace vbar::fsw::control {
 namespace {
 
 constexpr std::size_t kDimension = 6;
-constexpr double kRegularisation = 1e-14;  ///< of the trace of the weighted gramian
-constexpr int kPasses = 3;                 ///< of iterative refinement
+constexpr double kRegularisation = 1e-14;  ///< share of the trace of the weighted gramian
+constexpr int kPasses = 3;                 ///< passes of iterative refinement
 constexpr double kExact = 1e-13;           ///< residual that rounding leaves with |target| = 1
 
 /// A subset of the program's impulses with new values.

@@ -76,7 +76,7 @@ double residual_of(const Range& range, const Unknowns& x) {
 
 struct Fit {
   Unknowns x = Unknowns::Zero();
-  Matrix3 covariance = Matrix3::Zero();  ///< of the position
+  Matrix3 covariance = Matrix3::Zero();  ///< covariance of the position
   Status status = Status::kDidNotConverge;
 };
 

@@ -21,7 +21,7 @@ Status Inbox::receive(std::span<const std::uint8_t> bytes) {
 Status Inbox::file(const PacketView& packet) {
   if (packet.header.spacecraft != spacecraft_) return Status::kInvalidArgument;
   if (!is_usable(packet.header.time)) return Status::kOutOfRange;
-  Status status = Status::kWrongType;  // of an unknown APID
+  Status status = Status::kWrongType;  // result for an unknown APID
   packets::for_each_message([&]<class Message>() {
     if (packet.header.apid == packets::MessageTraits<Message>::kApid) status = take<Message>(packet);
   });

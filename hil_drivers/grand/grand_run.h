@@ -33,7 +33,7 @@ struct GrandSettings : mission::TestbedSettings {
   std::shared_ptr<const GeneratorSettings> generator_settings;
   std::string host = "127.0.0.1";
   std::uint16_t control_port =
-      0;                       ///< of the generator, or of its first instance, the next follow; 0: as the bench says
+      0;  ///< port of the generator, or of its first instance, the next follow; 0: as the bench says
   std::uint16_t hil_port = 0;  ///< 0: as the generator states
   fsw::Duration sample_period;
   fsw::Duration lead;  ///< a sample's own time before its sending; real time only

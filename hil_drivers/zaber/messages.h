@@ -3,7 +3,7 @@
 //
 //   /1 2 move abs 1000:XX        device, axis, command, checksum (all but the command may be missing)
 //   @01 2 OK BUSY WR 0           reply: device, axis, OK or RJ, BUSY or IDLE, the gravest warning or --, data
-//   #01 2 text   !01 2 IDLE --   information and alerts, which nobody asked for
+//   #01 2 text   !01 2 IDLE --   information and alerts, without a request
 //
 // The checksum is the low byte of minus the sum of the characters between the first one and the colon, as two digits.
 

@@ -54,7 +54,7 @@ class Propagation {
   /// PropagationRecord::incomplete_reason of one that was stopped.
   static constexpr const char* kInterruption = "interrupted";
 
-  /// Told each row, in order of time and, at one time, of the mission's spacecraft.
+  /// Receives each row, in order of time and, at one time, of the mission's spacecraft.
   using RowSink = std::function<void(std::size_t spacecraft, const report::EphemerisRow& row)>;
 
   /// Loads the data and puts the spacecraft on their orbits. `mission` must outlive it. Throws what TruthModel and

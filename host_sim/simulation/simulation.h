@@ -1,6 +1,6 @@
 #pragma once
 // One run: a true world, sources, links, a flight computer and actuators around one queue of events. All of them come
-// from outside (assembly.h makes them from a mission); nothing here knows what a source is.
+// from outside (assembly.h makes them from a mission); nothing here depends on the kind of a source.
 //
 // At one instant things happen in this order: measurements are taken, packets arrive, a waypoint is judged, the flight
 // software steps, burns are executed. So a burn at a waypoint's own time counts as after it, and a step sees what was
@@ -77,7 +77,7 @@ struct RunFacts {
     std::int64_t epochs = 0;
     std::int64_t failures = 0;
     std::string last_failure;
-    engine::Lateness late;  ///< measurements begun late; real time only
+    engine::Lateness late;  ///< measurements started late; real time only
   };
   bool complete = false;  ///< it came to its end
   fsw::Duration simulated;

@@ -58,7 +58,7 @@ void whole_mission(benchmark::State& state, const char* name) {
   state.counters["other_s"] = mean(sum.other_s);
 }
 
-/// What the flight software was told, step by step.
+/// Inputs of the flight software, step by step.
 class InputKeeper final : public app::RunObserver {
  public:
   struct Step {

@@ -20,7 +20,7 @@ using namespace vbar::fsw::imaging;
 constexpr int kWidth = 500;
 constexpr int kHeight = 800;
 
-/// So many stars of magnitude 7.5 and brighter, smeared as by the orbit's rate.
+/// A number of stars of magnitude 7.5 and brighter, smeared as by the orbit's rate.
 std::vector<std::uint16_t> star_field(int stars) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);

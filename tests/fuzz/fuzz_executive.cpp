@@ -91,7 +91,7 @@ void play(FlightExecutive& board, Watch& watch, std::span<const std::uint8_t> co
 }  // namespace
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  // Too large to allocate anew for every input; its constructor leaves the large arrays alone.
+  // Too large to allocate again for every input; its constructor leaves the large arrays alone.
   alignas(FlightExecutive) static std::array<std::byte, sizeof(FlightExecutive)> memory;
   vbar::testing::reset_fake_gnc();
   Watch watch;

@@ -68,7 +68,7 @@ namespace {
 
 constexpr int kCellMargin = 5;  // px of a cell left out: neighbours and the halo
 
-/// CRC-4 of ITU-T G.704, x^4 + x + 1, begun with ones so that a strip of zeros is not valid.
+/// CRC-4 of ITU-T G.704, x^4 + x + 1, initialised with ones so that a strip of zeros is not valid.
 unsigned check_of(std::uint16_t frame) {
   unsigned crc = 0xF;
   for (int bit = kNumberBits - 1; bit >= 0; --bit) {

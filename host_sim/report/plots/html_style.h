@@ -1,5 +1,6 @@
 #pragma once
-// The style sheet of all reports. Colours of series (c0 to c5) can be told apart in print and by colour-blind readers.
+// The style sheet of all reports. Colours of series (c0 to c5) can be distinguished in print and by colour-blind
+// readers.
 
 namespace vbar::report {
 

@@ -1,5 +1,5 @@
 // The angles-only rendezvous without images: bearings as image processing promises them, burns as flown before, all
-// forces in the truth. How well navigation knows the target at the waypoints, and whether it knows how well.
+// forces in the truth. Errors of navigation at the waypoints, and their consistency with its covariance.
 
 #include <algorithm>
 #include <memory>
@@ -82,7 +82,7 @@ const TrueFlight& whole_flight() {
 
 TEST(AnglesOnly, KnowsTheTargetAtTheWaypoints) {
   constexpr unsigned kSeeds = 4;
-  // Errors of bearings as promised; burns known to a thousandth, as the filter is told.
+  // Errors of bearings as promised; burns known to a thousandth, as the filter is configured.
   SensorErrors errors;
   errors.burn_relative = 1e-3;
   std::vector<std::vector<double>> error(7);

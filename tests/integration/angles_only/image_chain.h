@@ -1,6 +1,7 @@
 #pragma once
 // From light to bearing without an orbit in between: images as the digital camera makes them, through tiles, into
-// angles-only tracking, which is told the servicer's orbit, the commanded pointing and an expected place of the target.
+// angles-only tracking, which is given the servicer's orbit, the commanded pointing and an expected place of the
+// target.
 
 #include <cstdint>
 #include <functional>

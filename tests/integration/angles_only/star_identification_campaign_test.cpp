@@ -60,7 +60,7 @@ TEST(StarIdentificationCampaign, RegionTracking) {
 }
 
 TEST(StarIdentificationCampaign, NothingIsAcceptedWhereThereAreNoStars) {
-  // All attitudes may come out, so many hypotheses are tried: some 100,000 a field of 30 objects.
+  // All attitudes may come out, so that some 100,000 hypotheses are tried in a field of 30 objects.
   sky::Random random(14);
   auto identifier = std::make_unique<fsw::stars::StarIdentifier>();
   const fsw::stars::Field field{Eigen::Vector3d::UnitZ(), sky::kRegion.radius()};

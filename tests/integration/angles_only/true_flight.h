@@ -70,7 +70,7 @@ class SimulatedSensors {
   MeasuredEpoch measure(std::size_t index);
   /// Two-line-element quality: 1 sigma a * (da, dl, de, di) of 30, 1000, 200, 200 m.
   fsw::filter::TargetApriori apriori();
-  /// As flight software knows them.
+  /// As flight software has them.
   const std::vector<fsw::filter::Burn>& known_burns() const { return known_burns_; }
 
  private:
@@ -105,7 +105,7 @@ class AnglesOnlyFlight {
   fsw::measurements::BearingAiding bearings_;
 };
 
-/// Normalised error squared of the estimated ROE: six on average if the filter is honest.
+/// Normalised error squared of the estimated ROE: six on average if the filter is consistent.
 double roe_nees(const TrueEpoch& epoch, const fsw::filter::RelativeNavigationFilter& filter);
 /// Of the servicer's own orbit, position and velocity: likewise.
 double own_orbit_nees(const TrueEpoch& epoch, const fsw::filter::RelativeNavigationFilter& filter);

@@ -25,7 +25,7 @@
 
 namespace vbar::test {
 
-/// Truth of the pair at each of the receivers' epochs, nobody burning.
+/// Truth of the pair at each of the receivers' epochs, without burns.
 class CoastingPair {
  public:
   /// missions/experiment3.toml with `overrides`, for `duration_s`.
@@ -71,7 +71,7 @@ class EmulatedPair {
   /// Estimated minus true relative state in the servicer's RTN at the filter's epoch, m and m/s.
   [[nodiscard]] fsw::Vector6 error() const;
   [[nodiscard]] double position_error_m() const { return error().head<3>().norm(); }
-  /// Normalised estimation error squared: chi-square with six degrees of freedom if the filter is honest.
+  /// Normalised estimation error squared: chi-square with six degrees of freedom if the filter is consistent.
   [[nodiscard]] double nees() const;
 
   /// Held integers that are not those of the emulator.
@@ -154,7 +154,7 @@ void edit_messages(Bytes& bytes, const std::function<void(int id, Bytes& message
 inline constexpr std::size_t kOemHeaderBytes = 28;
 inline constexpr int kRange = 43, kRawEphem = 41, kGalEphemeris = 1122, kBdsEphemeris = 1696;
 
-/// RANGE: a count, and records of so many bytes, which begin with the satellite's number (16 bits), GLONASS frequency
+/// RANGE: a count, and records of that many bytes, which begin with the satellite's number (16 bits), GLONASS frequency
 /// (16 bits), and pseudorange (double).
 inline constexpr std::size_t kRangeRecordBytes = 44;
 

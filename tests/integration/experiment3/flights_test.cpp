@@ -151,7 +151,7 @@ TEST_P(Silence, OfTenMinutesIsCoastedToldAndRecoveredFrom) {
     if (since_s >= 60.0 && since_s < kSilence_s) {
       EXPECT_EQ(estimate.navigation_source, kPropagated) << since_s;
       EXPECT_EQ(estimate.navigation_valid, 1) << since_s;
-      EXPECT_LT(error_m, 4.0 * std::sqrt(variance)) << since_s;  // it knows how much it has lost
+      EXPECT_LT(error_m, 4.0 * std::sqrt(variance)) << since_s;  // its covariance contains the loss
       largest_m.add(error_m);
     }
     if (since_s >= kSilence_s && estimate.navigation_source == kFixed) {

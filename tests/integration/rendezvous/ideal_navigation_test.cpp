@@ -179,7 +179,7 @@ TEST_F(SameFlight, AnotherStartIsAnotherFlight) {
 
 }  // namespace
 
-// The rendezvous under every force of the truth, of which the flight software knows J2 alone.
+// The rendezvous under every force of the truth, of which the flight software models J2 alone.
 
 namespace {
 

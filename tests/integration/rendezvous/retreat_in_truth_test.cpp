@@ -1,6 +1,6 @@
 // The retreat from every third minute between waypoints 7 and 10, in the truth model: at once, and after 10 and 35
 // minutes without a burn, with a semi-major axis in error by 5 cm and differential drag of 1e-9 m/s^2, of which the
-// retreat allows for both signs and knows neither.
+// retreat allows for both signs.
 
 #include <algorithm>
 #include <array>

@@ -37,7 +37,7 @@ using ::testing::HasSubstr;
 const fsw::Vector3 kBaseline(5.0, -3.0, 6.0);
 constexpr std::array<const char*, 2> kVehicles{"servicer", "target"};
 
-/// A bench process and what its user knows of it.
+/// A bench process and what its user has of it.
 class EmulatorProcess {
  public:
   explicit EmulatorProcess(const std::vector<std::string>& options = {}) {

@@ -1,5 +1,5 @@
 #pragma once
-// A test article for the executive's tests: everything it says depends on every byte it was told, in order, so that a
+// A test article for the executive's tests: all its outputs depend on every byte of its inputs, in order, so that a
 // packet that is lost, repeated, swapped or altered on the way changes all of its later output.
 
 #include <cstddef>

@@ -109,7 +109,7 @@ TEST(CycleClock, BothRobotsMoveInStepOnTheVirtualClock) {
   EXPECT_NEAR(0.3, camera->measured.axes_rad[0], 1e-6);
   EXPECT_NEAR(-0.05, camera->measured.track_m, 1e-7);
   EXPECT_NEAR(0.4, target->measured.axes_rad[5], 1e-6);
-  // Nobody answers: bench time stands still, and Ethernet KRL works.
+  // No answer arrives: bench time stands still, and Ethernet KRL works.
   const eki::RobotState pose = camera_eki.pose();
   EXPECT_NEAR(0.3 * rsi::kDegreesPerRadian, pose.axes_deg[0], 1e-4);
   EXPECT_NEAR(-50.0, pose.track_mm, 1e-4);

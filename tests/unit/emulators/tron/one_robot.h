@@ -85,7 +85,7 @@ class OneRobot {
     is_readable = decoder_.decode(last_text, rob);
     return rob;
   }
-  /// States that nobody has answered.
+  /// States without an answer.
   void discard() {
     while (!computer.receive().empty()) {
     }

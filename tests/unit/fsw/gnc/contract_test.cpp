@@ -71,7 +71,7 @@ TEST(Contract, TheStateIsItsBytes) {
   for (int k = 0; k < 120; ++k) {
     EXPECT_EQ(other.deliver(flight.now, flight.world.measurement()), 0);
     const Answer resumed = other.step(flight.now, kStep);
-    flight.reports_maneuvers = false;  // the other one is not told, so this one must not be
+    flight.reports_maneuvers = false;  // the other one gets no reports, so this one must not
     flight.measures = false;
     EXPECT_EQ(flight.article.deliver(flight.now, flight.world.measurement()), 0);
     const Answer continued = flight.step();
@@ -256,8 +256,8 @@ TEST(Queues, OfManeuversAndTelecommandsKeepWhatTheyHave) {
   EXPECT_EQ(answer.telemetry_count, 3);
 }
 
-// Reports of maneuvers nobody commanded, hundreds of them without a measurement: navigation has room for 64. Its anchor
-// then moves past the oldest, so each still counts: 10 a minute of 1 mm/s along track for an hour are 0.6 m/s.
+// Reports of maneuvers without a command, hundreds of them without a measurement: navigation has room for 64. Its
+// anchor then moves past the oldest, so each still counts: 10 a minute of 1 mm/s along track for an hour are 0.6 m/s.
 TEST(Queues, OfManeuversSinceTheLastMeasurementLoseNone) {
   Flight flight(kStart);
   gnc_configuration c = configuration();

@@ -88,7 +88,7 @@ TEST(Fallback, LeastSquaresTakesOverWhenTheEstimateIsTooCoarse) {
   EXPECT_NEAR(seconds(flight.now - began), crossing_s, 60.0);
   for (const Command& command : answer.commands) EXPECT_EQ(command.message.solver, kLeastSquares);
 
-  // The plan is not made anew at every decision: that would chase the noise it is there for.
+  // The plan is not made again at every decision: that would chase the noise it is there for.
   const double planned = answer.control.planned_dv + answer.control.commanded_dv;
   for (int k = 0; k < 15; ++k) {
     answer = flight.step();

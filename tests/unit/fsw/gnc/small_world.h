@@ -79,7 +79,7 @@ class Flight {
   GpsTime now = kEpoch;
   bool measures = true;           ///< a measurement before each step
   double thrust = 1.0;            ///< executed share of a commanded burn
-  bool reports_maneuvers = true;  ///< what was executed is told before the next step
+  bool reports_maneuvers = true;  ///< what was executed is reported before the next step
   std::deque<Command> to_execute;
   double executed_dv = 0.0;  ///< m/s
   int executed = 0;

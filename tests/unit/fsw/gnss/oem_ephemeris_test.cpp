@@ -330,7 +330,7 @@ Status status_of(const RawEphemeris& raw) {
 TEST(RawEphemeris, RefusesSubframesThatAreNotOneSet) {
   ASSERT_EQ(status_of(example()), Status::kOk);
   RawEphemeris raw = example();
-  raw.three.set(10, 1, 8, 99);  // a new issue has begun to come in
+  raw.three.set(10, 1, 8, 99);  // the first part of a new issue
   EXPECT_EQ(status_of(raw), Status::kBadSequence);
   raw = example();
   raw.one.set(8, 1, 8, 99);

@@ -118,7 +118,7 @@ inline void overwrite(Bytes& bytes, std::size_t offset, const Bytes& field) {
   std::copy(field.begin(), field.end(), bytes.begin() + static_cast<std::ptrdiff_t>(offset));
 }
 
-/// A log as the stream reports it, of a receiver that knows the time. The body must live as long.
+/// A log as the stream reports it, of a receiver with a valid time. The body must live as long.
 inline OemMessage log_of(std::uint16_t id, const Bytes& body, GpsTime time) {
   OemMessage message;
   message.id = id;

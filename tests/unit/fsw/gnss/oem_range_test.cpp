@@ -349,7 +349,7 @@ TEST(OemRangeCompressed, RefusesTheSameAsRange) {
 
 }  // namespace
 
-// The time tags of epochs: exact, over the ends of weeks, and only from a receiver that knows the time.
+// The time tags of epochs: exact, over the ends of weeks, and only from a receiver with a valid time.
 
 namespace {
 

@@ -264,8 +264,8 @@ TEST(Retreat, OnTheOtherSideTheBurnIsReversed) {
   EXPECT_NEAR(ahead.dv_rtn(1), -behind.dv_rtn(1), 1e-12);
 }
 
-// Nobody acts after waypoint 8: 3.4 h later the target passes at 1.5 m. Before that the receding burn swings the target
-// too close, and a burn of the menu does not.
+// Without a burn after waypoint 8: 3.4 h later the target passes at 1.5 m. Before that the receding burn swings the
+// target too close, and a burn of the menu does not.
 TEST(Retreat, TheMenuIsSearchedWhereTheRecedingBurnIsTooClose) {
   int by_menu = 0;
   for (int minute = 150; minute < 205; ++minute) {

@@ -110,7 +110,7 @@ class GrandBenchTest : public ::testing::Test {
     return twins::gnss::body_truth(snapshot, snapshot.spacecraft[vehicle]);
   }
 
-  /// Both receivers, started; not begun.
+  /// Both receivers, started; the run has not begun.
   std::shared_ptr<GrandRun> started() {
     auto bench = std::make_shared<GrandRun>(settings_, testbeds::RunContext{mission_, "/data", outlook_});
     sources_.push_back(bench->make_receiver(plan("servicer", servicer_)));

@@ -388,7 +388,7 @@ TEST(CommandedProfile, KeysAndDefaults) {
               HasSubstr("secondary_axis_body: found an axis along the other one"));
 }
 
-// Root mean square over a day within 10 % of sigma (cross terms of nearby periods), zero mean, periods as told.
+// Root mean square over a day within 10 % of sigma (cross terms of nearby periods), zero mean, periods as configured.
 TEST(CommandedProfile, DrawnErrorHasItsSigma) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const truth::ControlError error = drawn_control_error(seed, "servicer", 1e-4);
