@@ -163,15 +163,17 @@ class ViewInBrowser(unittest.TestCase):
             truth, estimate = file_of(self.run_folder / "truth.csv"), file_of(self.run_folder / "estimate.csv")
             times = [float(cell) for cell in truth["time_s"]]
             draw = random.Random(1)
-            for _ in range(100):
-                t = draw.uniform(times[0], times[-1])
+            instants = [draw.uniform(times[0], times[-1]) for _ in range(100)]
+            for t, shown in zip(instants, page.evaluate(f"{instants}.map((t) => vbarView.valuesAt(t).rows)")):
                 row = max(k for k, time in enumerate(times) if time <= t)
-                shown = page.evaluate(f"(vbarView.cursor.set({t!r}), vbarView.valuesAt(vbarView.cursor.t).rows)")
                 for name, column in (("R", "r_m"), ("T", "t_m"), ("N", "n_m")):
                     values = next(value for value in shown if value["name"] == name)
                     self.assertEqual(bits([truth[f"relative_position_rtn_{column}"][row]]), bits([repr(values["truth"])]))
                     cell = estimate[f"relative_position_rtn_{column}"][row]
                     self.assertEqual(bits([cell]), bits([repr(values["estimate"]) if values["estimate"] is not None else ""]))
+            page.evaluate(f"vbarView.cursor.set({instants[-1]!r})")
+            shown = page.evaluate("document.querySelectorAll('.numbers tbody tr')[1].cells[1].dataset.raw")
+            self.assertEqual(bits([truth["relative_position_rtn_r_m"][row]]), bits([shown]))
             self.assertEqual(page.errors, [])
             self.assertEqual([load for load in page.loads if not load.startswith(("file:", "data:", "blob:"))], [])
 
