@@ -206,6 +206,8 @@ void GrandRun::start_vehicles(GpsTime first_epoch) {
     const testbeds::ReceiverPlan& plan = vehicle.plan;
     const ReceiverEpochs epochs{fsw::nearest_duration(plan.settings.output.period_s), log_offset(plan)};
     vehicle.trajectory.emplace(plan.settings.body_frame, epochs, first_epoch, context_.mission.seed, plan.spacecraft);
+    const GpsTime next = first_epoch + settings_.sample_period;
+    vehicle.trajectory->observe_earth(next, truth_at(plan.spacecraft, next).R_ecef_eci);
     vehicle.link = std::make_unique<ReceiverLink>(link_plan(plan, truth_at(plan.spacecraft, first_epoch)));
   }
 }

@@ -69,8 +69,6 @@ using twins::gnss::BodyTruth;
 /// A vector and its first three derivatives with respect to time.
 using Motion = std::array<Vector3, 4>;
 
-const Vector3 kEarthRate_ecef(0.0, 0.0, fsw::gnss::kEarthRateGps);
-
 /// -z along the boresight; x as near to the body's x as possible, or to its y if that is along the boresight.
 Matrix3 antenna_axes(const Vector3& boresight_body) {
   constexpr double kNearlyParallel = 0.9;
@@ -114,8 +112,8 @@ Vector3 two_body_jerk(const Vector3& position, const Vector3& velocity) {
 }
 
 /// Returns the motion as an observer in the rotating Earth-fixed frame sees it.
-Motion earth_fixed(const Matrix3& R_ecef_eci, const Motion& eci) {
-  const auto w = [](const Vector3& v) { return Vector3(kEarthRate_ecef.cross(v)); };
+Motion earth_fixed(const Matrix3& R_ecef_eci, const Vector3& earth_rate_ecef, const Motion& eci) {
+  const auto w = [&](const Vector3& v) { return Vector3(earth_rate_ecef.cross(v)); };
   const Vector3 r = R_ecef_eci * eci[0];
   const Vector3 v = R_ecef_eci * eci[1];
   const Vector3 a = R_ecef_eci * eci[2];
@@ -132,7 +130,29 @@ AntennaTrajectory::AntennaTrajectory(const twins::gnss::BodyFrameSettings& setti
       antenna_body_m_(twins::gnss::antenna_from_com(settings, errors_)),
       R_antenna_body_(antenna_axes(twins::gnss::true_boresight(settings, errors_))),
       noise_(settings.pco_noise_mm * 1e-3, epochs, seed, spacecraft),
-      start_(start) {}
+      start_(start),
+      earth_rate_ecef_(0.0, 0.0, fsw::gnss::kEarthRateGps) {}
+
+// Over at most this span the mean rate is that of its ends to 1e-14 rad/s, 1e-7 m/s in an orbit: the axis of precession
+// and nutation (1e-11 rad/s) turns once a day in the Earth-fixed frame.
+void AntennaTrajectory::observe_earth(fsw::GpsTime time, const Matrix3& R_ecef_eci) {
+  constexpr double kLongest_s = 10.0;
+  constexpr double kRounding = 2e-15;  // of the rotation between two times: below it the rate remains
+  if (earth_) {
+    const double s = fsw::seconds(time - earth_->time);
+    if (s == 0.0) return;
+    const Matrix3 R_now_before = R_ecef_eci * earth_->R_ecef_eci.transpose();
+    // The rotation angle is at most a milliradian: its sine times the axis is the antisymmetric part.
+    const Vector3 sine = 0.5 * Vector3(R_now_before(1, 2) - R_now_before(2, 1), R_now_before(2, 0) - R_now_before(0, 2),
+                                       R_now_before(0, 1) - R_now_before(1, 0));
+    const double norm = sine.norm();
+    if (std::abs(s) <= kLongest_s && norm > 0.0) {
+      const Vector3 rate = std::asin(norm) / (norm * s) * sine;
+      if ((rate - earth_rate_ecef_).norm() * std::abs(s) > kRounding) earth_rate_ecef_ = rate;
+    }
+  }
+  earth_ = {time, R_ecef_eci};
+}
 
 TrajectorySample AntennaTrajectory::at(const BodyTruth& truth) {
   check(truth, start_);
@@ -147,7 +167,8 @@ TrajectorySample AntennaTrajectory::at(const BodyTruth& truth) {
   motion[1] += truth.velocity_eci;
   motion[2] += *truth.acceleration_eci;
   motion[3] += two_body_jerk(truth.position_eci, truth.velocity_eci);
-  const Motion fixed = earth_fixed(truth.R_ecef_eci, motion);
+  observe_earth(truth.time, truth.R_ecef_eci);
+  const Motion fixed = earth_fixed(truth.R_ecef_eci, earth_rate_ecef_, motion);
 
   TrajectorySample sample;
   sample.time = truth.time - start_;
@@ -162,7 +183,7 @@ TrajectorySample AntennaTrajectory::at(const BodyTruth& truth) {
   sample.yaw_pitch_roll = yaw_pitch_roll(R_antenna_ned.transpose());
 
   // Against the local frame: that of the body less those of the Earth and of the local frame on it.
-  const Vector3 earth = R_antenna_ecef * kEarthRate_ecef;
+  const Vector3 earth = R_antenna_ecef * earth_rate_ecef_;
   const Vector3 frame = R_antenna_ned * local.rate_ned;
   const Vector3 against_earth = R_antenna_body_ * rate - earth;
   sample.angular_rate = against_earth - frame;

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "fsw/core/gps_time.h"
@@ -58,6 +59,11 @@ class AntennaTrajectory {
   /// before the start.
   TrajectorySample at(const twins::gnss::BodyTruth& truth);
 
+  /// Takes the Earth's rotation at a time near the next sample's, from which, with that of the sample, its angular
+  /// velocity follows: about the pole of date, which polar motion keeps away from the z axis, with precession and
+  /// nutation. Each sample does the same for the one after it. Without one the Earth turns about z at GPS's rate.
+  void observe_earth(fsw::GpsTime time, const fsw::Matrix3& R_ecef_eci);
+
   [[nodiscard]] const twins::gnss::BodyFrameErrors& errors() const { return errors_; }
   /// Rotation from the axes of the body to those of the antenna.
   [[nodiscard]] const fsw::Matrix3& R_antenna_body() const { return R_antenna_body_; }
@@ -69,6 +75,12 @@ class AntennaTrajectory {
   fsw::Matrix3 R_antenna_body_;
   PhaseCentreNoise noise_;
   fsw::GpsTime start_;
+  struct Observed {
+    fsw::GpsTime time;
+    fsw::Matrix3 R_ecef_eci;
+  };
+  std::optional<Observed> earth_;
+  fsw::Vector3 earth_rate_ecef_;  ///< angular velocity against ECI, rad/s
 };
 
 }  // namespace vbar::grand

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <stdexcept>
 
@@ -121,6 +122,50 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"Spin", spinning_truth, 0.0, {3.0, 12.5, 50.5, 93.0}, {1e-8, 2e-9, 1e-9}},
                     Case{"SpinWithNoise", spinning_truth, 1.0, {3.0, 12.5, 50.5, 93.0}, {1e-7, 3e-8, 5e-9}}),
     [](const auto& chosen) { return chosen.param.name; });
+
+/// The orbit over the real Earth: polar motion, precession and nutation.
+BodyTruth real_earth_truth(double t_s) {
+  static truth::EarthRotation earth(
+      std::make_shared<const truth::EarthOrientationSeries>(
+          truth::EarthOrientationSeries::load(vbar::test::data_directory() / "earth" / "eop_2009_2013.csv")),
+      kGnssStart);
+  BodyTruth truth = orbit_truth(t_s);
+  truth.R_ecef_eci = earth.R_itrf_gcrf_at(t_s);
+  return truth;
+}
+
+// Velocity, acceleration and jerk sent against differences of the positions sent, those of an antenna at the centre of
+// mass without noise. Errors of the differences with h = 2 s: h^4/30 of the fifth, h^4/90 of the sixth and h^2/4 of the
+// fifth derivative (1e-8 m/s^5 in this orbit), and rounding of positions, 2e-9 m over h, h^2 and h^3. The Earth's axis
+// about z alone would be 1 mm/s off (0.4 arcsec of polar motion), without precession and nutation 0.04 mm/s.
+TEST(AntennaTrajectory, DerivativesSentAreThoseOfThePositionsSent) {
+  AntennaTrajectory antenna = ideal();
+  antenna.observe_earth(kGnssStart + fsw::Duration{100'000'000}, real_earth_truth(0.1).R_ecef_eci);
+  constexpr double h = 2.0;
+  for (const double t : {4.0, 1400.0, 5000.0, 43000.0}) {
+    std::array<Vector3, 5> r;
+    for (std::size_t k = 0; k < r.size(); ++k)
+      r[k] = antenna.at(real_earth_truth(t + h * (static_cast<double>(k) - 2.0))).position_ecef_m;
+    const TrajectorySample sample = antenna.at(real_earth_truth(t));
+    const Vector3 velocity = (8.0 * (r[3] - r[1]) - (r[4] - r[0])) / (12.0 * h);
+    const Vector3 acceleration = (16.0 * (r[3] + r[1]) - (r[4] + r[0]) - 30.0 * r[2]) / (12.0 * h * h);
+    const Vector3 jerk = (r[4] - 2.0 * r[3] + 2.0 * r[1] - r[0]) / (2.0 * h * h * h);
+    EXPECT_LT((velocity - sample.velocity_ecef_mps).norm(), 1e-6) << t;
+    EXPECT_LT((acceleration - sample.acceleration_ecef_mps2).norm(), 1e-7) << t;
+    EXPECT_LT((jerk - sample.jerk_ecef_mps3).norm(), 1e-7) << t;
+  }
+}
+
+// The first sample of a run has no sample before it.
+TEST(AntennaTrajectory, TheFirstSampleKnowsTheEarthsAxis) {
+  AntennaTrajectory antenna = ideal(), other = ideal();
+  antenna.observe_earth(kGnssStart + fsw::Duration{100'000'000}, real_earth_truth(0.1).R_ecef_eci);
+  const TrajectorySample first = antenna.at(real_earth_truth(0.0));
+  static_cast<void>(other.at(real_earth_truth(0.1)));
+  const Vector3 velocity = other.at(real_earth_truth(0.0)).velocity_ecef_mps;
+  EXPECT_LT((first.velocity_ecef_mps - velocity).norm(), 1e-7);
+  EXPECT_GT((first.velocity_ecef_mps - ideal().at(real_earth_truth(0.0)).velocity_ecef_mps).norm(), 1e-4);
+}
 
 TEST(AntennaTrajectory, IsThePhaseCentreOfTheDigitalTwin) {
   twins::gnss::BodyFrameSettings settings;
