@@ -142,6 +142,8 @@ rsi::Rob Controller::Core::rob() const {
   rob.cartesian = settings.flange_pose(positions);
   rob.axes_deg = rsi::to_degrees(positions.axes_rad);
   rob.external_mm[0] = positions.track_m * rsi::kMillimetresPerMetre;
+  rob.cartesian_setpoint = cartesian_setpoint;
+  rob.axes_setpoint_deg = axes_setpoint_deg;
   rob.delay = delay;
   rob.ipoc = {std::to_string(ipoc), ipoc};
   return rob;
@@ -207,6 +209,8 @@ void Controller::Core::start_rsi() {
   message.clear();
   correction.begin(servo.command());
   monitor.begin(servo.command());
+  cartesian_setpoint = settings.flange_pose(reported());
+  axes_setpoint_deg = rsi::to_degrees(reported().axes_rad);
   delay = silent_cycles = lost_answers = 0;
   missing_in_row = 0;
   cycles_since_answer = 1;

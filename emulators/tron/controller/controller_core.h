@@ -54,6 +54,8 @@ struct Controller::Core {
   bool rsi_on = false, drives_on = true, emergency_stop = false, stopped = false, stood = true;
   bool sent_in_cycle = false;
   bool is_first_cycle = false;  ///< RSI was switched on and has sent nothing yet
+  /// Place at which RSI was switched on: corrections do not move the programmed set point (RSol, ASPos).
+  rsi::SixValues cartesian_setpoint{}, axes_setpoint_deg{};
   std::string message;
   bool is_frozen = false;
   AxisPositions measured, frozen, standstill_error;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "hil_drivers/tron/protocols/kuka_xml.h"
 #include "hil_drivers/wire/bytes.h"
@@ -12,7 +13,9 @@ namespace vbar::tron::rsi {
 
 namespace {
 
-constexpr std::array<std::string_view, 4> kInternal{"RIst", "AIPos", "EIPos", "Delay"};
+// Internal values of the controller; motor currents and technology parameters are not among them.
+constexpr std::array<std::string_view, 6> kInternal{"RIst", "RSol", "AIPos", "ASPos", "EIPos", "Delay"};
+constexpr std::array<std::string_view, 3> kNeeded{"RIst", "AIPos", "Delay"};
 constexpr int kMaxChannel = 64;
 
 struct Tag {
@@ -38,6 +41,9 @@ class EthernetReader {
     read_configuration(file_.child(file_.root(), "CONFIG"));
     read_sent(file_.child(file_.child(file_.root(), "SEND"), "ELEMENTS"));
     read_received(file_.child(file_.child(file_.root(), "RECEIVE"), "ELEMENTS"));
+    if (!config_.track_element.empty() && !sends("EIPos"))
+      file_.refuse(file_.child(file_.child(file_.root(), "SEND"), "ELEMENTS"), "no DEF_EIPos",
+                   "one, as the robot has a track");
     return config_;
   }
 
@@ -61,12 +67,12 @@ class EthernetReader {
       const std::string tag = file_.attribute(element, "TAG");
       const std::string name = tag.starts_with("DEF_") ? tag.substr(4) : "";
       if (std::find(kInternal.begin(), kInternal.end(), name) == kInternal.end())
-        file_.refuse(element, tag, "DEF_RIst, DEF_AIPos, DEF_EIPos, DEF_Delay");
+        file_.refuse(element, tag, fmt::format("DEF_{}", fmt::join(kInternal, ", DEF_")));
       if (sends(name)) file_.refuse(element, "a second " + tag, "one");
       if (file_.attribute(element, "INDX") != "INTERNAL") file_.refuse(element, "an index", "INDX=\"INTERNAL\"");
       config_.sent.push_back(name);
     }
-    for (const std::string_view name : kInternal)
+    for (const std::string_view name : kNeeded)
       if (!sends(name)) file_.refuse(elements, fmt::format("no DEF_{}", name), "one");
   }
 
@@ -270,6 +276,8 @@ bool append_sent(std::string& text, const std::string& name, const Rob& rob, int
   if (name == "RIst") return append_six(text, name, xml::kCartesianNames, rob.cartesian, decimals);
   if (name == "AIPos") return append_six(text, name, xml::kAxisNames, rob.axes_deg, decimals);
   if (name == "EIPos") return append_six(text, name, xml::kExternalNames, rob.external_mm, decimals);
+  if (name == "RSol") return append_six(text, name, xml::kCartesianNames, rob.cartesian_setpoint, decimals);
+  if (name == "ASPos") return append_six(text, name, xml::kAxisNames, rob.axes_setpoint_deg, decimals);
   if (name != "Delay") return false;
   text.append("<Delay D=\"").append(std::to_string(rob.delay)).append("\"/>");
   return true;
@@ -355,7 +363,10 @@ struct Decoder::Parser {
   bool read_sent(const std::string& name, Rob& rob) {
     if (name == "RIst") return read_six("RIst", xml::kCartesianNames, rob.cartesian);
     if (name == "AIPos") return read_six("AIPos", xml::kAxisNames, rob.axes_deg);
-    if (name == "EIPos") return read_six("EIPos", xml::kExternalNames, rob.external_mm);
+    // What the driver does not use need not be there: public simulators leave it out.
+    if (name == "EIPos")
+      return ethernet.track_element.empty() || read_six("EIPos", xml::kExternalNames, rob.external_mm);
+    if (name != "Delay") return true;
     pugi::xml_node element;
     if (!require("Delay", element)) return false;
     const auto delay = xml::unsigned_number(element.attribute("D").value());

@@ -31,10 +31,12 @@ struct Ipoc {
 
 /// Holds the state of the robot in one cycle.
 struct Rob {
-  SixValues cartesian{};    ///< RIst: X Y Z in mm, A B C in deg (about z, y', x''), of the flange in the base
-  SixValues axes_deg{};     ///< AIPos: A1 to A6 as measured by the motors
-  SixValues external_mm{};  ///< EIPos: E1 to E6
-  std::uint64_t delay = 0;  ///< cycles since RSI_ON without a valid answer
+  SixValues cartesian{};           ///< RIst: X Y Z in mm, A B C in deg (about z, y', x''), of the flange in the base
+  SixValues axes_deg{};            ///< AIPos: A1 to A6 as measured by the motors
+  SixValues external_mm{};         ///< EIPos: E1 to E6; unchanged by a decoder for a robot without a track
+  SixValues cartesian_setpoint{};  ///< RSol: as RIst, without corrections; only encoded
+  SixValues axes_setpoint_deg{};   ///< ASPos; only encoded
+  std::uint64_t delay = 0;         ///< cycles since RSI_ON without a valid answer
   Ipoc ipoc;
 };
 
@@ -62,7 +64,8 @@ struct EthernetXml {
   std::string address;  ///< address of the computer
   std::uint16_t port = 0;
   std::string sen_type;
-  /// Internal values that the controller sends, in their order on the wire: "RIst", "AIPos", "EIPos", "Delay".
+  /// Internal values that the controller sends, in their order on the wire: "RIst", "AIPos", "Delay", for a robot with
+  /// a track "EIPos"; "RSol", "ASPos" and, without a track, "EIPos" if its file lists them.
   std::vector<std::string> sent;
   std::string axis_element = "AK";  ///< element of the corrections A1 to A6
   std::array<ReceivedValue, kWireAxes> axes{};

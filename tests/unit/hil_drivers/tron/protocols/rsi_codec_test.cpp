@@ -118,6 +118,49 @@ TEST(RsiCodec, ReadsTheStateInEveryForm) {
   expect_same(rob_of_text(), rob);
 }
 
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(std::string::npos, at) << from;
+  return text.replace(at, from.size(), to);
+}
+
+// The state as the public simulator kuka_rsi_simulator (ros-industrial/kuka_experimental) writes it: no external axes,
+// TYPE, attributes in alphabetical order, time stamps from 0.
+TEST(RsiCodec, ReadsAnArmWithoutExternalAxes) {
+  Decoder decoder(robot_files(kTargetRobot).ethernet);
+  Rob rob;
+  ASSERT_TRUE(
+      decoder.decode("<Rob TYPE=\"KUKA\"><RIst A=\"0.0\" B=\"0.0\" C=\"0.0\" X=\"0.0\" Y=\"0.0\" Z=\"0.0\" />"
+                     "<RSol A=\"0.0\" B=\"0.0\" C=\"0.0\" X=\"0.0\" Y=\"0.0\" Z=\"0.0\" />"
+                     "<AIPos A1=\"0.0\" A2=\"-90.0\" A3=\"90.0\" A4=\"0.0\" A5=\"90.0\" A6=\"0.0\" />"
+                     "<ASPos A1=\"0.0\" A2=\"-90.0\" A3=\"90.0\" A4=\"0.0\" A5=\"90.0\" A6=\"0.0\" />"
+                     "<Delay D=\"0\" /><IPOC>0</IPOC></Rob>",
+                     rob))
+      << decoder.problem();
+  EXPECT_EQ((SixValues{0.0, -90.0, 90.0, 0.0, 90.0, 0.0}), rob.axes_deg);
+  EXPECT_EQ(0U, rob.ipoc.value);
+  // A robot with a track needs its place.
+  Decoder with_track(camera_ethernet());
+  EXPECT_FALSE(with_track.decode(replaced(kRob, "<EIPos", "<EXPos"), rob));
+  EXPECT_THAT(with_track.problem(), HasSubstr("<EIPos> is missing"));
+}
+
+// The order of the public configuration ros_rsi_ethernet.xml of the same repository.
+TEST(RsiCodec, WritesSetpointsThatTheFileLists) {
+  EthernetXml ethernet = robot_files(kTargetRobot).ethernet;
+  ethernet.sent = {"RIst", "RSol", "AIPos", "ASPos", "Delay"};
+  Rob rob;
+  rob.cartesian_setpoint[0] = 1.0;
+  rob.axes_setpoint_deg[1] = -90.0;
+  rob.ipoc = {"4", 4};
+  std::string text;
+  ASSERT_TRUE(encode(rob, ethernet, 1, text));
+  EXPECT_THAT(text, HasSubstr("<RSol X=\"1.0\" Y=\"0.0\""));
+  EXPECT_THAT(text, HasSubstr("<ASPos A1=\"0.0\" A2=\"-90.0\""));
+  EXPECT_LT(text.find("<RSol"), text.find("<AIPos"));
+  EXPECT_EQ(std::string::npos, text.find("<EIPos"));
+}
+
 TEST(RsiCodec, ReadsTheAnswer) {
   Decoder decoder(camera_ethernet());
   Sen sen;
@@ -134,12 +177,6 @@ TEST(RsiCodec, ReadsTheAnswer) {
   EXPECT_EQ(true, sen.stop);
   EXPECT_EQ(std::nullopt, sen.track_mm);
   EXPECT_EQ(std::nullopt, sen.axes_deg[1]);
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(std::string::npos, at) << from;
-  return text.replace(at, from.size(), to);
 }
 
 TEST(RsiCodec, RefusesHostileStatesWithOneSentence) {
@@ -289,8 +326,12 @@ class RefusedFiles : public testing::Test {
 TEST_F(RefusedFiles, TheEthernetConfiguration) {
   const std::string file = "camera_robot_ethernet.xml";
   EXPECT_EQ("camera_robot_ethernet.xml:5: PORT: found 70000; accepted: 1 to 65535", error_of(file, "59152", "70000"));
-  EXPECT_THAT(error_of(file, "DEF_RIst", "DEF_RSol"),
-              HasSubstr("camera_robot_ethernet.xml:11: ELEMENT: found DEF_RSol; accepted: DEF_RIst, DEF_AIPos"));
+  EXPECT_THAT(
+      error_of(file, "DEF_RIst", "DEF_MACur"),
+      HasSubstr("camera_robot_ethernet.xml:11: ELEMENT: found DEF_MACur; accepted: DEF_RIst, DEF_RSol, DEF_AIPos"));
+  EXPECT_THAT(error_of(file, "DEF_RIst", "DEF_RSol"), HasSubstr("found no DEF_RIst"));
+  EXPECT_THAT(error_of(file, "DEF_EIPos", "DEF_ASPos"),
+              HasSubstr("found no DEF_EIPos; accepted: one, as the robot has"));
   EXPECT_THAT(error_of(file, "DEF_AIPos", "DEF_RIst"), HasSubstr(":12: ELEMENT: found a second DEF_RIst"));
   EXPECT_THAT(error_of(file, "AK.A6", "AK.A5"), HasSubstr(":25: ELEMENT: found a second AK.A5"));
   EXPECT_THAT(error_of(file, "AK.A6", "BK.A6"), HasSubstr(":25: ELEMENT: found BK.A6 of TYPE DOUBLE"));
