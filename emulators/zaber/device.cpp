@@ -1,11 +1,13 @@
 #include "emulators/zaber/device.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <span>
 #include <sstream>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -24,6 +26,7 @@ constexpr const char* kStatusBusy = "STATUSBUSY";
 /// Steps of a speed: microsteps/s times this.
 constexpr double kSpeedUnit = 1.6384;
 constexpr std::int64_t kMaxPosition = 1'000'000'000;
+constexpr std::uint64_t kFirstSerial = 30'000, kSerials = 10'000;
 
 std::vector<std::string> words_of(const std::string& text) {
   std::istringstream stream(text);
@@ -101,8 +104,11 @@ Device::Result Device::execute(const Command& command) {
   if (command.axis != 0) return execute_on(axes_[static_cast<std::size_t>(command.axis - 1)], words, now_s);
   if (words.size() == 2 && words[0] == "get") {
     if (words[1] == "deviceid") return {false, "30222"};
+    if (words[1] == "version") return {false, "6.16"};
+    if (words[1] == "system.serial") return {false, std::to_string(kFirstSerial + settings_.seed % kSerials)};
+    if (words[1] == "system.access") return {false, "1"};
     if (words[1] == "system.axiscount") return {false, std::to_string(axes_.size())};
-    if (words[1] == "comm.alert") return {false, "0"};
+    if (words[1] == "comm.alert" || words[1] == "comm.checksum") return {false, "0"};
     if (words[1] == "comm.address") return {false, std::to_string(settings_.address)};
   }
   if (words.size() == 3 && words[0] == "set" && words[1] == "comm.alert")
@@ -169,12 +175,15 @@ std::string Device::value_of(const Axis& axis, const std::string& name) const {
   if (name == "limit.min") return std::to_string(axis.limit_min());
   if (name == "limit.max") return std::to_string(axis.limit_max());
   if (name == "limit.home.triggered") return axis.is_homed() ? "1" : "0";
+  if (name == "resolution") return "64";
+  if (name == "peripheralid") return "0";  // the axis is part of the device
   return {};
 }
 
 Device::Result Device::set(Axis& axis, const std::string& name, const std::string& value) {
   const auto number = integer_of(value);
-  if (value_of(axis, name).empty() || name == "limit.home.triggered") return {true, kBadCommand};
+  constexpr std::array<std::string_view, 4> kWritable{"pos", "maxspeed", "limit.min", "limit.max"};
+  if (std::ranges::find(kWritable, name) == kWritable.end()) return {true, kBadCommand};
   if (!number) return {true, kBadData};
   if (name == "pos") {
     axis.set_count(*number);

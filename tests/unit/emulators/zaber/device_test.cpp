@@ -74,6 +74,20 @@ TEST_F(DeviceTest, SpeedsAreInTheProtocolsUnit) {
   EXPECT_EQ(ask("/1 2 get pos"), "@01 2 OK BUSY -- 90000");
 }
 
+// What Zaber's own libraries ask first, by the settings of firmware 6.16 in the ASCII protocol manual.
+TEST_F(DeviceTest, IdentifiesItself) {
+  EXPECT_EQ(ask("/1 get deviceid"), "@01 0 OK IDLE WR 30222");
+  EXPECT_EQ(ask("/1 get version"), "@01 0 OK IDLE WR 6.16");
+  EXPECT_EQ(ask("/1 get system.serial"), "@01 0 OK IDLE WR 30001");
+  EXPECT_EQ(ask("/1 get system.access"), "@01 0 OK IDLE WR 1");
+  EXPECT_EQ(ask("/1 get system.axiscount"), "@01 0 OK IDLE WR 2");
+  EXPECT_EQ(ask("/1 get comm.checksum"), "@01 0 OK IDLE WR 0");
+  EXPECT_EQ(ask("/1 get peripheralid"), "@01 0 OK IDLE WR 0 0");
+  EXPECT_EQ(ask("/1 1 get resolution"), "@01 1 OK IDLE WR 64");
+  EXPECT_EQ(ask("/1 1 set resolution 32"), "@01 1 RJ IDLE WR BADCOMMAND");
+  EXPECT_EQ(ask("/1 get device.id"), "@01 0 RJ IDLE WR BADCOMMAND");  // of firmware 7
+}
+
 TEST_F(DeviceTest, RejectsWhatTheManualSaysItRejects) {
   home();
   EXPECT_EQ(ask("/1 1 move abs -1"), "@01 1 RJ IDLE -- BADDATA");
