@@ -137,6 +137,7 @@ AntennaTrajectory::AntennaTrajectory(const twins::gnss::BodyFrameSettings& setti
 // and nutation (1e-11 rad/s) turns once a day in the Earth-fixed frame.
 void AntennaTrajectory::observe_earth(fsw::GpsTime time, const Matrix3& R_ecef_eci) {
   constexpr double kLongest_s = 10.0;
+  constexpr double kRounding = 2e-15;  // of the rotation between two times: below it the rate remains
   if (earth_) {
     const double s = fsw::seconds(time - earth_->time);
     if (s == 0.0) return;
@@ -145,7 +146,10 @@ void AntennaTrajectory::observe_earth(fsw::GpsTime time, const Matrix3& R_ecef_e
     const Vector3 sine = 0.5 * Vector3(R_now_before(1, 2) - R_now_before(2, 1), R_now_before(2, 0) - R_now_before(0, 2),
                                        R_now_before(0, 1) - R_now_before(1, 0));
     const double norm = sine.norm();
-    if (std::abs(s) <= kLongest_s && norm > 0.0) earth_rate_ecef_ = std::asin(norm) / (norm * s) * sine;
+    if (std::abs(s) <= kLongest_s && norm > 0.0) {
+      const Vector3 rate = std::asin(norm) / (norm * s) * sine;
+      if ((rate - earth_rate_ecef_).norm() * std::abs(s) > kRounding) earth_rate_ecef_ = rate;
+    }
   }
   earth_ = {time, R_ecef_eci};
 }
