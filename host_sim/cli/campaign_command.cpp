@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "host_sim/campaign/engine.h"
+#include "host_sim/campaign/exchange.h"
 #include "host_sim/campaign/run_campaign.h"
 #include "host_sim/campaign/status.h"
 #include "host_sim/campaign_report/page.h"
@@ -140,6 +141,33 @@ void add_rerun(CLI::App& campaign, int& exit_code) {
   });
 }
 
+void add_export(CLI::App& campaign) {
+  const auto folder = std::make_shared<std::filesystem::path>(), to = std::make_shared<std::filesystem::path>();
+  CLI::App* command = campaign.add_subcommand(
+      "export", "pack the cases that are left to fly, with program, data and mission, for another computer");
+  command->footer(
+      "There `./fly.sh` flies them with the program in it, `./fly.sh BUNDLE/vbar` with the libraries of a\n"
+      "portable bundle, and packs results.tar.gz for vbar campaign import.");
+  command->add_option("folder", *folder, kFolderHelp)->required();
+  command->add_option("--to", *to, "archive (.tar.gz, .tgz) or folder; NAME-cases.tar.gz unless given");
+  command->callback([=] {
+    const campaign::Exported done = campaign::export_cases(campaign::Folder(*folder), *to);
+    fmt::print("cases    {}\nexport   {}\n", done.cases, done.to.string());
+  });
+}
+
+void add_import(CLI::App& campaign, int& exit_code) {
+  const auto folder = std::make_shared<std::filesystem::path>(), from = std::make_shared<std::filesystem::path>();
+  CLI::App* command = campaign.add_subcommand("import", "take results of exported cases, of the same program and data");
+  command->add_option("folder", *folder, kFolderHelp)->required();
+  command->add_option("results", *from, "results.tar.gz, or the exported folder that was flown")->required();
+  command->callback([=, &exit_code] {
+    const campaign::Imported done = campaign::import_results(campaign::Folder(*folder), *from);
+    fmt::print("results  {} taken, {} were known, {} left to fly\n", done.taken, done.known, done.left);
+    exit_code = report(*folder);
+  });
+}
+
 void add_worker(CLI::App& campaign, int& exit_code, const campaign::CommandLine& command_line) {
   const auto request = std::make_shared<campaign::WorkerRequest>();
   CLI::App* command =
@@ -167,6 +195,8 @@ void add_campaign_command(CLI::App& program, int& exit_code, const campaign::Com
   add_status(*campaign, exit_code);
   add_report(*campaign, exit_code);
   add_rerun(*campaign, exit_code);
+  add_export(*campaign);
+  add_import(*campaign, exit_code);
   add_worker(*campaign, exit_code, command_line);
 }
 

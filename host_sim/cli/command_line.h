@@ -21,7 +21,7 @@ namespace vbar::app {
 /// Message for a command line that ended with CLI::ExtrasError: the argument without a place, and the nearest option.
 [[nodiscard]] std::string unexpected_argument(const CLI::App& program);
 
-// vbar campaign run | status | report | rerun | worker on the command line.
+// vbar campaign run | status | report | rerun | export | import | worker on the command line.
 
 /// Adds the command; when it was chosen, `exit_code` is its exit code. `command_line` executes a command line of vbar:
 /// a flight of a campaign is one.

@@ -8,6 +8,7 @@ import json
 import os
 import random
 import re
+import shutil
 import signal
 import statistics
 import subprocess
@@ -452,6 +453,119 @@ class CampaignRequirements(unittest.TestCase):
                     self.assertIn(expected, result.stderr)
                     self.assertNotIn("json.exception", result.stderr)
                     self.assertEqual(result.stderr.count("\n"), 1)
+
+
+class CampaignExchange(unittest.TestCase):
+    """Cases that are flown from another folder, as on another computer."""
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = cls.enterClassContext(scratch())
+        cls.file = campaign_file(cls.folder, seeds="1..3", values="[0.0]")
+        run(cls.file, "--out", cls.folder / "reference")
+        cls.home = cls.folder / "home"
+        run(cls.file, "--out", cls.home, "--cases", "0", expect=75)
+        exported = vbar("campaign", "export", cls.home, "--to", cls.folder / "cases.tar.gz")
+        assert exported.returncode == 0 and "cases    2\n" in exported.stdout, exported.stderr
+        (cls.folder / "away").mkdir()
+        subprocess.run(["tar", "xzf", cls.folder / "cases.tar.gz", "-C", cls.folder / "away"], check=True)
+        cls.away = cls.folder / "away/home"
+        flown = subprocess.run(["sh", cls.away / "fly.sh"], capture_output=True, text=True, cwd="/")
+        assert flown.returncode == 0, flown.stdout + flown.stderr
+        cls.results = cls.away / "results.tar.gz"
+
+    def begun(self, name):
+        """A campaign at home of which case 0 has flown."""
+        run(self.file, "--out", self.folder / name, "--cases", "0", expect=75)
+        return self.folder / name
+
+    def refused(self, home, results, *parts):
+        before = sorted(file.name for file in home.rglob("*"))
+        result = vbar("campaign", "import", home, results)
+        self.assertEqual(result.returncode, 2, result.stdout + result.stderr)
+        for part in (*parts, "nothing was imported"):
+            self.assertIn(part, result.stderr)
+        self.assertEqual(result.stderr.count("\n"), 1)
+        self.assertEqual(sorted(file.name for file in home.rglob("*")), before)
+
+    def altered(self, name):
+        shutil.copytree(self.away, self.folder / name)
+        return self.folder / name
+
+    def test_exported_cases_have_the_outputs_of_those_flown_at_home(self):
+        home = self.begun("taken")
+        for results, counts in ((self.results, "2 taken, 1 were known, 0 left"), (self.results, "0 taken, 3 were known, 0 left"),
+                                (self.away, "0 taken, 3 were known, 0 left")):
+            result = vbar("campaign", "import", home, results)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIn(counts, result.stdout)
+            self.assertEqual(comparable(home), comparable(self.folder / "reference"))
+        run(home)
+        self.assertEqual(vbar("campaign", "export", home, "--to", self.folder / "none").returncode, 2)
+        self.assertFalse((self.folder / "none").exists())
+
+    def test_another_program_flies_the_one_of_the_export(self):
+        home = self.begun("in_parts")
+        away = self.folder / "part of it"
+        self.assertEqual(vbar("campaign", "export", home, "--to", away).returncode, 0)
+        self.assertEqual(vbar("campaign", "export", home, "--to", away).returncode, 2)
+        other = self.folder / "other_vbar"
+        shutil.copy(VBAR, other)
+        with other.open("ab") as file:
+            file.write(b"\0")
+        flown = subprocess.run(["sh", away / "fly.sh", other, "--cases", "1"], capture_output=True, text=True)
+        self.assertEqual(flown.returncode, 75, flown.stdout + flown.stderr)
+        result = vbar("campaign", "import", home, away / "results.tar.gz")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("1 taken, 1 were known, 1 left", result.stdout)
+        run(home)
+        self.assertEqual(comparable(home), comparable(self.folder / "reference"))
+        foreign = self.folder / "foreign"
+        subprocess.run([other, "campaign", "run", self.file, "--out", foreign, "--quiet"], check=True, capture_output=True)
+        self.refused(home, foreign, "its program is not that of this campaign (host/vbar: SHA-256")
+
+    def test_what_differs_is_named(self):
+        home = self.begun("strict")
+        for kind, place in (("data", "data/earth/"), ("mission", "files/"), ("program", "host/vbar")):
+            with self.subTest(kind):
+                away = self.altered(f"other_{kind}")
+                sums = away / "bin/SHA256SUMS"
+                lines = sums.read_text().splitlines()
+                (changed, *_) = (k for k, line in enumerate(lines) if line[66:].startswith(place))
+                lines[changed] = "0" * 64 + lines[changed][64:]
+                sums.write_text("\n".join(lines) + "\n")
+                self.refused(home, away, f"its {kind} is not that of this campaign ({lines[changed][66:]}:")
+        other = self.folder / "other_cases"
+        run(campaign_file(self.folder, "other.toml", seeds="1..4", values="[0.0]"), "--out", other, "--cases", "1", expect=75)
+        self.refused(home, other, "its cases are not those of this campaign")
+        self.refused(home, self.file, "is not a whole archive")
+
+    def test_archives_that_were_cut_are_refused(self):
+        home = self.begun("whole")
+        archive = self.results.read_bytes()
+        cut = self.folder / "cut.tar.gz"
+        for length in (0, 10, len(archive) // 2, len(archive) - 9, len(archive) - 1):
+            with self.subTest(length):
+                cut.write_bytes(archive[:length])
+                self.refused(home, cut, f"{cut}: is not a whole archive")
+
+    def test_results_that_were_altered_are_refused(self):
+        home = self.begun("altered_home")
+        away = self.altered("altered")
+        lines_of = {file: file.read_text() for file in (away / "results").glob("*.jsonl")}
+        (results,) = (file for file, text in lines_of.items() if '"case":1,' in text)
+        text = lines_of[results]
+        results.write_text(text.replace('"case":1,', '"case":2,', 1))
+        self.refused(home, away, "1 lines of its results are damaged")
+        names, *flights = text.splitlines(True)
+        for k, flight in enumerate(flights):
+            line = json.loads(flight)
+            del line["crc32"]
+            line["commands_sha256"] = "0" * 64
+            body = json.dumps(line, separators=(",", ":"))
+            flights[k] = body[:-1] + ',"crc32":"%08x"}\n' % zlib.crc32(body.encode())
+        results.write_text(names + "".join(flights))
+        run(home)  # the cases have results here, with other hashes
+        self.refused(home, away, "case 1 has other outputs")
 
 
 class CampaignKills(unittest.TestCase):
