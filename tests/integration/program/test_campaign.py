@@ -400,9 +400,9 @@ class CampaignRequirements(unittest.TestCase):
             self.assertIn("too few cases for a bound at 95 % confidence, two-sided: 36 are needed", stdout)
 
     def test_a_case_that_was_void_is_missing(self):
-        """A fault of a time after the end never takes effect."""
+        """A fault of the thruster between two burns never takes effect."""
         with scratch() as folder:
-            late = '[[sweep]]\nkey = "fault"\nvalues = [[], [{ kind = "silent", unit = "crosslink", at_h = 39.2, for_s = 1.0 }]]\n'
+            late = '[[sweep]]\nkey = "fault"\nvalues = [[], [{ kind = "thrust_scale", at_h = 39.001, for_s = 0.001, value = 0.5 }]]\n'
             rest = f'{late}[[require]]\nkey = "{self.KEY}"\nstatistic = "worst"\nmost = 1e6\n'
             file = campaign_file(folder, seeds="1..1", values="[0.0]", general="samples_h = [39.05]", rest=rest)
             result = vbar("campaign", "run", file, "--out", folder / "out")
