@@ -8,6 +8,7 @@
 
 #include "host_sim/cli/commands.h"
 #include "host_sim/cli/verdicts.h"
+#include "host_sim/files/error_lines.h"
 #include "host_sim/files/output_file.h"
 #include "host_sim/installation/sensor_kinds.h"
 #include "host_sim/report/run_folder.h"
@@ -26,7 +27,7 @@ namespace {
 report::RunRecord evaluated_run(const std::filesystem::path& folder) {
   report::RunRecord record = report::read_run(folder, sensors::extensions());
   for (const report::SourceFigures& source : record.summary.sources) testbeds::require_driver(source.kind);
-  for (const std::string& note : record.reading_notes) fmt::print(stderr, "vbar: {}\n", note);
+  for (const std::string& note : record.reading_notes) files::print_error("vbar", note);
   report::evaluate(record);
   const std::string health = record.summary.health ? report::health_line(*record.summary.health) : "";
   if (!health.empty()) fmt::print("flight software: {}\n", health);
