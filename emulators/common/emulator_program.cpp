@@ -1,15 +1,22 @@
 #include "emulators/common/emulator_program.h"
 
 #include <csignal>
+#include <cstdlib>
+#include <exception>
 #include <fstream>
 #include <stdexcept>
 #include <system_error>
 
 #include <boost/asio/buffer.hpp>
+#include <boost/asio/signal_set.hpp>
 #include <fmt/format.h>
 #include <sys/prctl.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "hil_drivers/wire/emulator_files.h"
+#include "host_sim/files/error_lines.h"
+#include "host_sim/mission/mission_error.h"
 
 namespace vbar::emulators {
 
@@ -29,11 +36,11 @@ EmulatorDirectory::EmulatorDirectory(const std::filesystem::path& directory) : p
 
 EmulatorDirectory::~EmulatorDirectory() {
   std::error_code ignored;
-  std::filesystem::remove(path_ / kAddressesFile, ignored);
+  std::filesystem::remove(path_ / wire::kAddressesFile, ignored);
 }
 
 void EmulatorDirectory::write_addresses(const std::string& json) const {
-  const std::filesystem::path file = path_ / kAddressesFile;
+  const std::filesystem::path file = path_ / wire::kAddressesFile;
   const std::filesystem::path partial = file.string() + ".partial";
   std::ofstream out(partial);
   out << json << "\n";
@@ -55,6 +62,39 @@ void ParentWatch::read() {
     if (error) return context_.stop();
     read();
   });
+}
+
+namespace {
+
+enum ExitCode { kDone = 0, kFailed = 1, kRefused = 2, kFaultExit = 3 };
+
+int complain(std::string_view program, const std::exception& error, ExitCode code) {
+  files::print_error(program, error.what());
+  return code;
+}
+
+}  // namespace
+
+int run_emulator(std::string_view program,
+                 const std::function<std::shared_ptr<void>(boost::asio::io_context& context)>& make) {
+  try {
+    boost::asio::io_context context(1);
+    boost::asio::signal_set signals(context, SIGINT, SIGTERM, SIGHUP);
+    signals.async_wait([&](const boost::system::error_code&, int) { context.stop(); });
+    std::signal(SIGPIPE, SIG_IGN);
+    const ParentWatch watch(context);
+    const std::shared_ptr<void> emulator = make(context);
+    context.run();
+    return kDone;
+  } catch (const mission::MissionError& error) {
+    return complain(program, error, kRefused);
+  } catch (const std::exception& error) {
+    return complain(program, error, kFailed);
+  }
+}
+
+void exit_by_fault() {
+  std::_Exit(kFaultExit);
 }
 
 }  // namespace vbar::emulators

@@ -1,15 +1,17 @@
 #pragma once
-// Directory in which an emulator makes its lines, and the file that lists their addresses.
+// What the programs of all emulated testbeds share: their directory with the list of addresses, their event loop, their
+// end.
 
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <string>
+#include <string_view>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
 
 namespace vbar::emulators {
-
-inline constexpr const char* kAddressesFile = "addresses.json";
 
 class EmulatorDirectory {
  public:
@@ -31,9 +33,8 @@ class EmulatorDirectory {
   std::filesystem::path path_;
 };
 
-// Watch on the parent: an emulator does not outlive the program that started it.
-
-/// Ends the event loop when the parent process has ended, and when a pipe on standard input is closed by its other end.
+/// Watches the parent, which an emulator does not outlive: ends the event loop when that process has ended, and when a
+/// pipe on standard input is closed by its other end.
 class ParentWatch {
  public:
   explicit ParentWatch(boost::asio::io_context& context);
@@ -47,5 +48,13 @@ class ParentWatch {
   boost::asio::posix::stream_descriptor input_;
   char byte_ = 0;
 };
+
+/// Runs the emulator that `make` returns until a signal or the end of the parent stops its event loop. Returns the exit
+/// code of the program: 2 for an invalid file or assignment, 1 for another error, with one line on standard error.
+[[nodiscard]] int run_emulator(std::string_view program,
+                               const std::function<std::shared_ptr<void>(boost::asio::io_context& context)>& make);
+
+/// Ends the program at once, as a fault of the emulated testbed does.
+[[noreturn]] void exit_by_fault();
 
 }  // namespace vbar::emulators

@@ -6,12 +6,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "hil_drivers/wire/emulator_files.h"
+
 namespace vbar::optical_stimulator::bench {
 namespace {
 
 constexpr const char* kTerminal = "rails";
 constexpr const char* kControlSocket = "control.sock";
-constexpr const char* kFaultFile = "faults.jsonl";
 constexpr std::chrono::milliseconds kLookAround{50};
 constexpr std::size_t kLensAxis = 0, kDisplayAxis = 1;
 
@@ -50,7 +51,7 @@ Bench::Bench(boost::asio::io_context& context, const BenchSettings& settings,
       rail_server_(context, rails_, directory_.path() / kTerminal),
       camera_(std::make_unique<CameraLink>(context, settings, path_.camera().settings(),
                                            [this](const ExposureRequest& request) { return expose(request); })),
-      faults_(fault_actions(std::move(exit)), directory_.path() / kFaultFile),
+      faults_(fault_actions(std::move(exit)), directory_.path() / wire::kFaultsFile),
       control_(context, directory_.path() / kControlSocket,
                [this](const std::string& line, const emulators::Answer& answer) {
                  faults_.add(fault_from_json(line), now_s(),
@@ -113,7 +114,7 @@ void Bench::write_addresses() const {
   addresses["rails"]["pty"] = (directory_.path() / kTerminal).string();
   addresses["rails"]["tcp"] = fmt::format("127.0.0.1:{}", rail_server_.tcp_port());
   addresses["control"] = (directory_.path() / kControlSocket).string();
-  addresses["faults"] = (directory_.path() / kFaultFile).string();
+  addresses["faults"] = (directory_.path() / wire::kFaultsFile).string();
   directory_.write_addresses(addresses.dump(2));
 }
 

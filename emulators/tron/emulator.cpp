@@ -9,6 +9,7 @@
 
 #include "emulators/common/control_line.h"
 #include "hil_drivers/tron/geometry/board_design.h"
+#include "hil_drivers/wire/emulator_files.h"
 #include "host_sim/mission/mission.h"
 #include "host_sim/mission/table_reader.h"
 
@@ -16,7 +17,6 @@ namespace vbar::tron::bench {
 namespace {
 
 constexpr const char* kControlSocket = "control.sock";
-constexpr const char* kFaultFile = "faults.jsonl";
 constexpr const char* kTruthFile = "truth.csv";
 constexpr const char* kSummaryFile = "summary.json";
 constexpr const char* kControlLine = "control line";
@@ -81,7 +81,7 @@ Bench::Bench(boost::asio::io_context& context, const BenchSettings& settings, co
       renderer_(settings_.laboratory, settings.gap, settings.seed, place.data),
       truth_(place.truth.empty() ? directory_.path() / kTruthFile : place.truth),
       exit_(std::move(exit)),
-      faults_([this](const Fault& fault, bool is_on) { act(fault, is_on); }, directory_.path() / kFaultFile),
+      faults_([this](const Fault& fault, bool is_on) { act(fault, is_on); }, directory_.path() / wire::kFaultsFile),
       camera_(context, settings, sensor_,
               {[this](const gige::Request& request) { return look(request); },
                [this](const LabView& view) { return render(view); }, [this] { end_exposure(); }}),
@@ -249,7 +249,7 @@ void Bench::write_addresses() const {
   addresses["vicon_port"] = vicon_port_;
   addresses["sacn"] = lights_.address();
   addresses["control"] = (directory_.path() / kControlSocket).string();
-  addresses["faults"] = (directory_.path() / kFaultFile).string();
+  addresses["faults"] = (directory_.path() / wire::kFaultsFile).string();
   directory_.write_addresses(addresses.dump(2));
 }
 

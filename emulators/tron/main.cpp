@@ -1,46 +1,18 @@
 // vbar_tron_bench: robots, motion capture, lights and camera of TRON, emulated behind their wire protocols.
 
-#include <csignal>
-#include <cstdio>
-#include <cstdlib>
-#include <exception>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/signal_set.hpp>
-#include <fmt/format.h>
 
 #include "emulators/common/emulator_program.h"
 #include "emulators/tron/emulator.h"
 #include "host_sim/mission/data_directory.h"
-#include "host_sim/mission/mission_error.h"
-
-namespace {
 
 namespace bench = vbar::tron::bench;
-
-enum ExitCode { kDone = 0, kFailed = 1, kRefused = 2, kFaultExit = 3 };
-
-int run(const bench::BenchSettings& settings, const bench::MeasuredPosture& place) {
-  boost::asio::io_context context(1);
-  boost::asio::signal_set signals(context, SIGINT, SIGTERM, SIGHUP);
-  signals.async_wait([&](const boost::system::error_code&, int) { context.stop(); });
-  std::signal(SIGPIPE, SIG_IGN);
-  const vbar::emulators::ParentWatch watch(context);
-  const bench::Bench emulator(context, settings, place, [] { std::_Exit(kFaultExit); });
-  context.run();
-  return kDone;
-}
-
-int complain(const char* what, int exit_code) {
-  fmt::print(stderr, "vbar_tron_bench: {}\n", what);
-  return exit_code;
-}
-
-}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App program{"Emulated TRON: robots, motion capture, lights and camera behind their wire protocols"};
@@ -63,15 +35,11 @@ int main(int argc, char** argv) {
   CLI11_PARSE(program, argc, argv);
   if (*seed_option) assignments.push_back("seed=" + std::to_string(seed));
   if (*clock_option) assignments.push_back("clock.kind=" + clock);
-  try {
+  return vbar::emulators::run_emulator("vbar_tron_bench", [&](boost::asio::io_context& context) {
     place.data = vbar::mission::data_directory();
     bench::BenchSettings settings = bench::read_bench(bench_file, assignments);
     if (!fault_file.empty())
       for (const bench::Fault& fault : bench::read_fault_file(fault_file)) settings.faults.push_back(fault);
-    return run(settings, place);
-  } catch (const vbar::mission::MissionError& error) {
-    return complain(error.what(), kRefused);
-  } catch (const std::exception& error) {
-    return complain(error.what(), kFailed);
-  }
+    return std::make_shared<bench::Bench>(context, settings, place, vbar::emulators::exit_by_fault);
+  });
 }

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "hil_drivers/wire/emulator_files.h"
 #include "host_sim/io/child_process.h"
 #include "host_sim/report/provenance.h"
 
@@ -28,11 +29,6 @@ using Replacement = std::pair<std::string_view, std::string>;
 
 // Emulator of a testbed as a child process of the run, in a directory of its own that is removed with the process. Once
 // the emulator listens it writes its addresses to addresses.json, whose form is the testbed's.
-
-inline constexpr const char* kAddressesFile = "addresses.json";
-
-/// File of the faults that the emulator acknowledges, a line each.
-inline constexpr const char* kFaultsFile = "faults.jsonl";
 
 /// Returns the number of faults that have taken effect, by their kind; lines of another form count as "unknown". Empty
 /// without the file.
@@ -53,7 +49,7 @@ class EmulatorProcess {
   EmulatorProcess& operator=(const EmulatorProcess&) = delete;
 
   /// File of the addresses; valid until stop().
-  [[nodiscard]] std::filesystem::path addresses_file() const { return directory_ / kAddressesFile; }
+  [[nodiscard]] std::filesystem::path addresses_file() const { return directory_ / wire::kAddressesFile; }
   [[nodiscard]] const std::filesystem::path& directory() const { return directory_; }
   /// Digests of the program and of every file named by its arguments.
   [[nodiscard]] const std::vector<report::FileDigest>& files() const { return files_; }

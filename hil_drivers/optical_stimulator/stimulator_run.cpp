@@ -89,44 +89,28 @@ void check_exposure(double exposure_s, double rate_hz) {
 }  // namespace
 
 StimulatorRun::StimulatorRun(const OpticalStimulatorSettings& settings, const testbeds::RunContext& context)
-    : settings_(settings),
-      context_(context),
-      calibration_file_(calibration_file(settings, context.data_directory, context.mission.seed)) {}
+    : CameraRun("optical_stimulator", context, calibration_file(settings, context.data_directory, context.mission.seed),
+                {"render_s", &StimulatorRow::render_s}),
+      settings_(settings) {}
 
 StimulatorRun::~StimulatorRun() {
   close();
 }
 
-std::unique_ptr<twins::camera::ImageTaker> StimulatorRun::make_camera(const testbeds::CameraPlan& plan) {
-  if (plan_)
-    throw std::runtime_error("testbed optical_stimulator: it has one camera, and " + plan.name + " is a second");
+twins::camera::CameraSettings StimulatorRun::calibrated_camera_of(const testbeds::CameraPlan& plan) {
   calibration_ = load_calibration(calibration_file_);
   if (plan.settings.exposure_s != calibration_->validity.exposure_s)
     throw std::runtime_error(fmt::format("{}: it holds for exposures of {} s, and those of {} take {} s",
                                          calibration_file_.string(), calibration_->validity.exposure_s, plan.name,
                                          plan.settings.exposure_s));
   if (!settings_.any_exposure) check_exposure(plan.settings.exposure_s, calibration_->validity.display_rate_hz);
-  plan_ = plan;
-  camera_ = calibrated_camera(*calibration_, plan.settings);
-  return std::make_unique<StimulatorCamera>(shared_from_this());
+  return calibrated_camera(*calibration_, plan.settings);
 }
 
-void StimulatorRun::begin(report::RunRecord& record, const std::filesystem::path& /*folder*/) {
-  record_ = &record;
-}
-
-void StimulatorRun::start() {
-  try {
-    if (!settings_.bench.empty()) process_.emplace(settings_.bench, context_.mission.seed, context_.data_directory);
-    open_devices();
-    check_bench();
-  } catch (const std::runtime_error& error) {
-    // The end of its process is the cause of all other failures.
-    const auto end = process_ ? process_->end_report() : std::nullopt;
-    const std::string reason = end ? *end : error.what();
-    close();
-    throw std::runtime_error("testbed optical_stimulator: " + reason);
-  }
+void StimulatorRun::open() {
+  if (!settings_.bench.empty()) process_.emplace(settings_.bench, context_.mission.seed, context_.data_directory);
+  open_devices();
+  check_bench();
 }
 
 void StimulatorRun::open_devices() {
@@ -178,47 +162,29 @@ void StimulatorRun::check_bench() {
   picture_ = Picture(light_->width(), light_->height());
 }
 
-twins::camera::TakenImage StimulatorRun::take(const twins::camera::Exposure& exposure) {
-  StimulatorRow row;
-  row.time_s = fsw::seconds(exposure.time - context_.mission.epoch);
-  row.image = exposure.number;
+twins::camera::TakenImage StimulatorRun::expose(const twins::camera::Exposure& exposure, StimulatorRow& row) {
   const auto rendering = Clock::now();
   const PictureFigures figures = pictures_->draw(exposure, picture_);
   row.render_s = seconds_since(rendering);
   row.points = figures.points;
   row.wanted_electrons = figures.wanted_electrons;
   row.clipped_electrons = figures.clipped_electrons;
-  try {
-    ExchangedImage image = exchange_->take(picture_);
-    row.frame = image.frame;
-    row.tries = image.tries;
-    row.stale = image.stale;
-    row.packets_resent = image.packets_resent;
-    row.reconnects = image.reconnects;
-    row.show_s = image.show_s;
-    row.receive_s = image.receive_s;
-    row.strip_brightness = image.brightness;
-    if (exposure.number % kBetweenRailChecks == 0) {
-      if (const auto rails = devices_->check_rails()) {
-        row.rail_lens_mm = rails->lens_mm;
-        row.rail_display_mm = rails->display_mm;
-      }
+  ExchangedImage image = exchange_->take(picture_);
+  row.frame = image.frame;
+  row.tries = image.tries;
+  row.stale = image.stale;
+  row.packets_resent = image.packets_resent;
+  row.reconnects = image.reconnects;
+  row.show_s = image.show_s;
+  row.receive_s = image.receive_s;
+  row.strip_brightness = image.brightness;
+  if (exposure.number % kBetweenRailChecks == 0) {
+    if (const auto rails = devices_->check_rails()) {
+      row.rail_lens_mm = rails->lens_mm;
+      row.rail_display_mm = rails->display_mm;
     }
-    const std::scoped_lock lock(mutex_);
-    rows_.push_back(row);
-    return {std::move(image.dn)};
-  } catch (const std::runtime_error& error) {
-    constexpr std::chrono::milliseconds kEnd{300};  // its connections are closed before its end is known
-    const auto end = process_ ? process_->end_report(kEnd) : std::nullopt;
-    throw std::runtime_error("testbed optical_stimulator: " + (end ? *end : error.what()));
   }
-}
-
-std::vector<twins::Note> StimulatorRun::statistics() const {
-  const std::scoped_lock lock(mutex_);
-  double render_s = 0.0;
-  for (const StimulatorRow& row : rows_) render_s += row.render_s;
-  return {{"render_s", render_s}};
+  return {std::move(image.dn)};
 }
 
 void StimulatorRun::stop() noexcept {
@@ -226,31 +192,17 @@ void StimulatorRun::stop() noexcept {
   if (devices_) devices_->stop();
 }
 
-void StimulatorRun::close() noexcept {
+void StimulatorRun::close_devices() noexcept {
   devices_.reset();  // the display shows black, the camera is released
-  if (process_) process_->stop();
 }
 
-void StimulatorRun::finish() noexcept {
-  if (record_ == nullptr) return;
-  try {
-    RunFigures figures;
-    figures.calibration_file = calibration_file_;
-    figures.calibration = &*calibration_;
-    if (self_check_) figures.self_check = *self_check_;
-    if (devices_) figures.devices = devices_->identity();
-    close();
-    if (process_) {
-      figures.bench_files = process_->files();
-      figures.faults = process_->faults();
-    }
-    const std::scoped_lock lock(mutex_);
-    record_->tables.rows<StimulatorRow>() = rows_;
-    add_figures(figures, *record_);
-  } catch (...) {
-    // Without memory for its figures the run still ends in order.
-  }
-  record_ = nullptr;
+RunFigures StimulatorRun::figures_of_run() {
+  RunFigures figures;
+  figures.calibration_file = calibration_file_;
+  figures.calibration = &*calibration_;
+  if (self_check_) figures.self_check = *self_check_;
+  if (devices_) figures.devices = devices_->identity();
+  return figures;
 }
 
 namespace {

@@ -4,13 +4,10 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <utility>
-#include <vector>
 
-#include "hil_drivers/common/emulator_process.h"
+#include "hil_drivers/common/camera_run.h"
 #include "hil_drivers/optical_stimulator/hardware/devices.h"
 #include "hil_drivers/optical_stimulator/imaging/image_exchange.h"
 #include "hil_drivers/optical_stimulator/imaging/self_check.h"
@@ -47,39 +44,25 @@ std::shared_ptr<const mission::TestbedSettings> read_optical_stimulator(const mi
 [[nodiscard]] std::filesystem::path calibration_file(const OpticalStimulatorSettings& settings,
                                                      const std::filesystem::path& data_directory, std::uint64_t seed);
 
-class StimulatorRun final : public testbeds::TestbedRun, public std::enable_shared_from_this<StimulatorRun> {
+class StimulatorRun final : public testbeds::CameraRun<StimulatorRow, RunFigures> {
  public:
   StimulatorRun(const OpticalStimulatorSettings& settings, const testbeds::RunContext& context);
   ~StimulatorRun() override;
 
-  /// Makes the only camera. Throws std::runtime_error for a second one, and for a calibration that is not of this
-  /// camera.
-  [[nodiscard]] std::unique_ptr<twins::camera::ImageTaker> make_camera(const testbeds::CameraPlan& plan) override;
-  void begin(report::RunRecord& record, const std::filesystem::path& folder) override;
-  void finish() noexcept override;
-
-  // For the image taker.
-  /// Starts the testbed, opens its devices and checks it. Throws std::runtime_error, one sentence.
-  void start();
-  /// Stops from another thread than take(), which then returns.
-  void stop() noexcept;
-  twins::camera::TakenImage take(const twins::camera::Exposure& exposure);
-  [[nodiscard]] std::vector<twins::Note> statistics() const;
-
  private:
+  [[nodiscard]] twins::camera::CameraSettings calibrated_camera_of(const testbeds::CameraPlan& plan) override;
+  void open() override;
+  [[nodiscard]] twins::camera::TakenImage expose(const twins::camera::Exposure& exposure, StimulatorRow& row) override;
+  void stop() noexcept override;
+  void close_devices() noexcept override;
+  [[nodiscard]] RunFigures figures_of_run() override;
+
   void open_devices();
   void check_bench();
   void place_display(const DayCorrection& correction);
-  [[nodiscard]] Exchange make_exchange() const;
-  void close() noexcept;
 
   OpticalStimulatorSettings settings_;
-  testbeds::RunContext context_;
-  std::filesystem::path calibration_file_;
   std::optional<StimulatorCalibration> calibration_;
-  std::optional<testbeds::CameraPlan> plan_;
-  twins::camera::CameraSettings camera_;  ///< as calibrated
-  std::optional<testbeds::EmulatorProcess> process_;
   std::optional<StimulatorDevices> devices_;
   std::optional<DisplayLight> light_;
   std::shared_ptr<const DisplayMap> map_;
@@ -88,25 +71,6 @@ class StimulatorRun final : public testbeds::TestbedRun, public std::enable_shar
   std::optional<ScenePictures> pictures_;
   Picture picture_;
   std::optional<SelfCheckFigures> self_check_;
-  report::RunRecord* record_ = nullptr;
-
-  mutable std::mutex mutex_;  // guards the rows, which take() adds
-  std::vector<StimulatorRow> rows_;
-};
-
-// Camera of the testbed as the image taker of a sensor.
-
-class StimulatorCamera final : public twins::camera::ImageTaker {
- public:
-  explicit StimulatorCamera(std::shared_ptr<StimulatorRun> run) : run_(std::move(run)) {}
-
-  void start(fsw::GpsTime /*first_epoch*/) override { run_->start(); }
-  void stop(twins::StopReason /*reason*/) override { run_->stop(); }
-  twins::camera::TakenImage take(const twins::camera::Exposure& exposure) override { return run_->take(exposure); }
-  [[nodiscard]] std::vector<twins::Note> statistics() const override { return run_->statistics(); }
-
- private:
-  std::shared_ptr<StimulatorRun> run_;
 };
 
 // [testbed.optical_stimulator], registered in ../testbeds.cpp.

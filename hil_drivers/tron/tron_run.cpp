@@ -112,50 +112,34 @@ twins::camera::CameraSettings calibrated_camera(const Calibration& calibration,
 }
 
 TronRun::TronRun(const TronSettings& settings, const testbeds::RunContext& context)
-    : settings_(settings),
-      context_(context),
-      laboratory_file_(replaced(settings.laboratory, context.data_directory, context.mission.seed)),
-      calibration_file_(calibration_file(settings, context.data_directory, context.mission.seed)) {}
+    : CameraRun("tron", context, calibration_file(settings, context.data_directory, context.mission.seed),
+                {"bench_s", &TronRow::bench_s}),
+      settings_(settings),
+      laboratory_file_(replaced(settings.laboratory, context.data_directory, context.mission.seed)) {}
 
 TronRun::~TronRun() {
   close();
 }
 
-std::unique_ptr<twins::camera::ImageTaker> TronRun::make_camera(const testbeds::CameraPlan& plan) {
-  if (plan_) throw std::runtime_error("testbed tron: it has one camera, and " + plan.name + " is a second");
+twins::camera::CameraSettings TronRun::calibrated_camera_of(const testbeds::CameraPlan& plan) {
   bench_ = read_testbed_design(laboratory_file_);
   calibration_ = load_calibration(calibration_file_);
   if (calibration_.validity.bench != bench_.name)
-    throw std::runtime_error(fmt::format("testbed tron: {} is a calibration of the bench \"{}\", not of \"{}\"",
-                                         calibration_file_.string(), calibration_.validity.bench, bench_.name));
+    throw error_of(fmt::format("{} is a calibration of the bench \"{}\", not of \"{}\"", calibration_file_.string(),
+                               calibration_.validity.bench, bench_.name));
   const LensCalibration& lens = calibration_.lens;
   if (const auto region = single_pixels(plan.settings.region);
       region.width != lens.width_px || region.height != lens.height_px)
-    throw std::runtime_error(fmt::format(
-        "testbed tron: {} reads {} x {} single pixels, binned by {}; {} holds for images of {} x {}", plan.name,
-        region.width, region.height, kBinning, calibration_file_.string(), lens.width_px, lens.height_px));
-  plan_ = plan;
-  camera_ = calibrated_camera(calibration_, plan.settings);
+    throw error_of(fmt::format("{} reads {} x {} single pixels, binned by {}; {} holds for images of {} x {}",
+                               plan.name, region.width, region.height, kBinning, calibration_file_.string(),
+                               lens.width_px, lens.height_px));
   exposure_s_ = plan.settings.exposure_s * exposure_factor(bench_.lamp);
-  return std::make_unique<TronCamera>(shared_from_this());
+  return calibrated_camera(calibration_, plan.settings);
 }
 
-void TronRun::begin(report::RunRecord& record, const std::filesystem::path& folder) {
-  record_ = &record;
-  folder_ = folder;
-}
-
-void TronRun::start() {
-  try {
-    open_devices();
-    check_calibration();
-  } catch (const std::runtime_error& error) {
-    // The end of its process is the cause of all other failures.
-    const auto end = process_ ? process_->end_report() : std::nullopt;
-    const std::string reason = end ? *end : error.what();
-    close();
-    throw std::runtime_error("testbed tron: " + reason);
-  }
+void TronRun::open() {
+  open_devices();
+  check_calibration();
 }
 
 void TronRun::open_devices() {
@@ -233,23 +217,12 @@ void TronRun::check_calibration() {
         calibration_file_.string(), chi_square, kForeignCalibration));
 }
 
-twins::camera::TakenImage TronRun::take(const twins::camera::Exposure& exposure) {
-  TronRow row;
-  row.time_s = fsw::seconds(exposure.time - context_.mission.epoch);
-  row.image = exposure.number;
-  try {
-    twins::camera::TakenImage image = taken(exposure, row);
-    if (row.pose_error_mm) image.notes.push_back({"pose_error_mm", *row.pose_error_mm});
-    if (row.pose_error_deg) image.notes.push_back({"pose_error_deg", *row.pose_error_deg});
-    image.failure = row.failure;
-    const std::scoped_lock lock(mutex_);
-    rows_.push_back(row);
-    return image;
-  } catch (const std::runtime_error& error) {
-    constexpr std::chrono::milliseconds kEnd{300};  // its connections are closed before its end is known
-    const auto end = process_ ? process_->end_report(kEnd) : std::nullopt;
-    throw std::runtime_error("testbed tron: " + (end ? *end : error.what()));
-  }
+twins::camera::TakenImage TronRun::expose(const twins::camera::Exposure& exposure, TronRow& row) {
+  twins::camera::TakenImage image = taken(exposure, row);
+  if (row.pose_error_mm) image.notes.push_back({"pose_error_mm", *row.pose_error_mm});
+  if (row.pose_error_deg) image.notes.push_back({"pose_error_deg", *row.pose_error_deg});
+  image.failure = row.failure;
+  return image;
 }
 
 /// An image whose failure the row states has no pixels.
@@ -288,50 +261,27 @@ twins::camera::TakenImage TronRun::taken(const twins::camera::Exposure& exposure
   return {std::move(finished.dn)};
 }
 
-std::vector<twins::Note> TronRun::statistics() const {
-  const std::scoped_lock lock(mutex_);
-  double bench_s = 0.0;
-  for (const TronRow& row : rows_) bench_s += row.bench_s;
-  return {{"bench_s", bench_s}};
-}
-
 void TronRun::stop() noexcept {
   if (laboratory_) laboratory_->stop();
 }
 
-void TronRun::close() noexcept {
+void TronRun::close_devices() noexcept {
   if (laboratory_) laboratory_->close();
-  if (process_) process_->stop();
 }
 
-void TronRun::finish() noexcept {
-  if (record_ == nullptr) return;
-  try {
-    RunFigures figures;
-    figures.clock = clock_;
-    figures.files = {laboratory_file_, calibration_file_};
-    if (laboratory_) {
-      figures.is_emulated = laboratory_->camera_is_emulated();
-      figures.camera = laboratory_->camera();
-      figures.devices = laboratory_->counts();
-    }
-    if (process_) {
-      std::error_code ignored;
-      if (!folder_.empty())
-        std::filesystem::copy_file(process_->directory() / "truth.csv", folder_ / "bench_truth.csv", ignored);
-    }
-    close();
-    if (process_) {
-      figures.bench_files = process_->files();
-      figures.faults = process_->faults();
-    }
-    const std::scoped_lock lock(mutex_);
-    record_->tables.rows<TronRow>() = rows_;
-    add_figures(figures, *record_);
-  } catch (...) {
-    // Without memory for its figures the run still ends in order.
+RunFigures TronRun::figures_of_run() {
+  RunFigures figures;
+  figures.clock = clock_;
+  figures.files = {laboratory_file_, calibration_file_};
+  if (laboratory_) {
+    figures.is_emulated = laboratory_->camera_is_emulated();
+    figures.camera = laboratory_->camera();
+    figures.devices = laboratory_->counts();
   }
-  record_ = nullptr;
+  std::error_code ignored;
+  if (process_ && !folder_.empty())
+    std::filesystem::copy_file(process_->directory() / "truth.csv", folder_ / "bench_truth.csv", ignored);
+  return figures;
 }
 
 namespace {

@@ -4,21 +4,18 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <utility>
-#include <vector>
 
-#include "hil_drivers/common/emulator_process.h"
+#include "hil_drivers/common/camera_run.h"
 #include "hil_drivers/tron/geometry/calibration.h"
 #include "hil_drivers/tron/imaging/image_exchange.h"
 #include "hil_drivers/tron/imaging/image_finish.h"
 #include "hil_drivers/tron/laboratory.h"
 #include "hil_drivers/tron/lights/room_light.h"
 #include "hil_drivers/tron/motion_planning/arm_planner.h"
+#include "hil_drivers/tron/tron_report.h"
 #include "host_sim/mission/mission.h"
 #include "host_sim/mission/table_reader.h"
 #include "host_sim/sensors/testbed.h"
@@ -59,68 +56,35 @@ std::shared_ptr<const mission::TestbedSettings> read_tron(const mission::TableRe
 [[nodiscard]] twins::camera::CameraSettings calibrated_camera(const Calibration& calibration,
                                                               const twins::camera::CameraSettings& of_mission);
 
-class TronRun final : public testbeds::TestbedRun, public std::enable_shared_from_this<TronRun> {
+class TronRun final : public testbeds::CameraRun<TronRow, RunFigures> {
  public:
   TronRun(const TronSettings& settings, const testbeds::RunContext& context);
   ~TronRun() override;
 
-  /// Makes the only camera. Throws std::runtime_error for a second one, and for a calibration that is not of this
-  /// testbed.
-  [[nodiscard]] std::unique_ptr<twins::camera::ImageTaker> make_camera(const testbeds::CameraPlan& plan) override;
-  void begin(report::RunRecord& record, const std::filesystem::path& folder) override;
-  void finish() noexcept override;
-
-  // For the image taker.
-  /// Starts the testbed and opens its devices. Throws std::runtime_error, one sentence.
-  void start();
-  /// Stops from another thread than take(), which then returns or throws.
-  void stop() noexcept;
-  twins::camera::TakenImage take(const twins::camera::Exposure& exposure);
-  [[nodiscard]] std::vector<twins::Note> statistics() const;
-
  private:
+  [[nodiscard]] twins::camera::CameraSettings calibrated_camera_of(const testbeds::CameraPlan& plan) override;
+  void open() override;
+  [[nodiscard]] twins::camera::TakenImage expose(const twins::camera::Exposure& exposure, TronRow& row) override;
+  void stop() noexcept override;
+  void close_devices() noexcept override;
+  [[nodiscard]] RunFigures figures_of_run() override;
+
   void open_devices();
   void check_calibration();
   [[nodiscard]] twins::camera::TakenImage taken(const twins::camera::Exposure& exposure, TronRow& row);
-  void close() noexcept;
 
   TronSettings settings_;
-  testbeds::RunContext context_;
-  std::filesystem::path laboratory_file_, calibration_file_;
+  std::filesystem::path laboratory_file_;
   TestbedDesign bench_;
   Calibration calibration_;
-  std::optional<testbeds::CameraPlan> plan_;
-  twins::camera::CameraSettings camera_;  ///< as calibrated
-  double exposure_s_ = 0.0;               ///< in the laboratory
-  std::string clock_;                     ///< clock of the testbed
+  double exposure_s_ = 0.0;  ///< in the laboratory
+  std::string clock_;        ///< clock of the testbed
 
-  std::optional<testbeds::EmulatorProcess> process_;
   std::unique_ptr<WiredDevices> laboratory_;
   std::optional<ArmPlanner> planner_;
   std::optional<RoomLight> lights_;
   std::optional<ImageExchange> exchange_;
   std::optional<ImageFinish> finish_;
-
-  report::RunRecord* record_ = nullptr;
-  std::filesystem::path folder_;
-  std::filesystem::path truth_file_;  ///< that an emulator writes
-  mutable std::mutex mutex_;          // guards the rows, which take() adds
-  std::vector<TronRow> rows_;
-};
-
-// Camera of the testbed as the image taker of a sensor.
-
-class TronCamera final : public twins::camera::ImageTaker {
- public:
-  explicit TronCamera(std::shared_ptr<TronRun> run) : run_(std::move(run)) {}
-
-  void start(fsw::GpsTime /*first_epoch*/) override { run_->start(); }
-  void stop(twins::StopReason /*reason*/) override { run_->stop(); }
-  twins::camera::TakenImage take(const twins::camera::Exposure& exposure) override { return run_->take(exposure); }
-  [[nodiscard]] std::vector<twins::Note> statistics() const override { return run_->statistics(); }
-
- private:
-  std::shared_ptr<TronRun> run_;
 };
 
 // TRON as a testbed of missions.

@@ -80,7 +80,7 @@ void refuse_if_being_flown(const Folder& folder, const Standing& standing) {
 
 void refuse_conflicts(const Standing& standing) {
   if (!standing.results.conflicts.empty())
-    throw std::runtime_error(fmt::format("{}", fmt::join(standing.results.conflicts, "\n")));
+    throw std::runtime_error(fmt::format("{}", fmt::join(standing.results.conflicts, "; ")));
 }
 
 std::vector<Case> cases_to_fly(const RunRequest& request, const Standing& standing) {

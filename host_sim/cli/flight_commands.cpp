@@ -10,6 +10,7 @@
 #include "host_sim/cli/commands.h"
 #include "host_sim/cli/recorded_flight.h"
 #include "host_sim/cli/verdicts.h"
+#include "host_sim/files/error_lines.h"
 #include "host_sim/installation/sensor_kinds.h"
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/mission/data_file.h"
@@ -34,7 +35,7 @@ int run_command(const RunOptions& options) {
   const std::unique_ptr<AssembledMission> assembled = assemble(mission, !options.check);
   if (options.check) {
     if (!options.quiet) {
-      report_data(assembled->data_notes());
+      report_before_flight(*assembled);
       fmt::print("{}: can be flown\n", options.mission.string());
     }
     return kDone;
@@ -92,7 +93,8 @@ int propagate_command(const PropagateOptions& options) {
   folder.finish(record);
   if (!options.quiet) fmt::print("{}ephemeris  {}\n", report::propagation_table(record), folder.path().string());
   if (record.complete) return kDone;
-  fmt::print(stderr, "vbar: {}: propagation incomplete: {}\n", folder.path().string(), record.incomplete_reason);
+  files::print_error("vbar",
+                     fmt::format("{}: propagation incomplete: {}", folder.path().string(), record.incomplete_reason));
   return record.incomplete_reason == Propagation::kInterruption ? kInterrupted : kFailed;
 }
 

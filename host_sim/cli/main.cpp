@@ -21,8 +21,8 @@
 #include "host_sim/cli/build_info.h"
 #include "host_sim/cli/command_line.h"
 #include "host_sim/cli/commands.h"
+#include "host_sim/files/error_lines.h"
 #include "host_sim/files/own_program.h"
-#include "host_sim/files/text_lines.h"
 #include "host_sim/mission/mission_error.h"
 #include "host_sim/mission/name_search.h"
 #include "host_sim/report/run_folder.h"
@@ -76,10 +76,9 @@ std::string unknown_command(const CLI::App& program, int argc, char** argv) {
                      nearest ? fmt::format(", did you mean {}?", *nearest) : "");
 }
 
-int complain(const char* what, int exit_code) {
+int complain(std::string_view what, int exit_code) {
   std::fflush(stdout);
-  static_cast<void>(
-      std::fputs(fmt::format("vbar: {}\n", vbar::files::printable(what)).c_str(), stderr));  // may be closed, or full
+  vbar::files::print_error("vbar", what);
   return exit_code;
 }
 
@@ -108,27 +107,25 @@ int after_output(const CLI::App& program, int result) {
            name == "verify" || (name == "campaign" && command->got_subcommand("run"));
   };
   if (!std::ranges::any_of(commands, leaves_folder))
-    return complain(("standard output cannot be written" + reason).c_str(), result == kDone ? kFailed : result);
-  return complain(
-      fmt::format("standard output cannot be written{}; the exit code is that of the {}, whose folder is not "
-                  "concerned",
-                  reason, commands.front()->get_name())
-          .c_str(),
-      result);
+    return complain("standard output cannot be written" + reason, result == kDone ? kFailed : result);
+  return complain(fmt::format("standard output cannot be written{}; the exit code is that of the {}, whose folder is "
+                              "not concerned",
+                              reason, commands.front()->get_name()),
+                  result);
 }
 
 /// Parses the command line; the command runs as its callback.
 int parse_and_run(CLI::App& program, int argc, char** argv, const int& exit_code) {
   if (const std::string message = unknown_command(program, argc, argv); !message.empty())
-    return complain(message.c_str(), kRefused);
+    return complain(message, kRefused);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ExtrasError&) {
-    return complain(unexpected_argument(program).c_str(), kRefused);
+    return complain(unexpected_argument(program), kRefused);
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? kDone : kRefused;
   } catch (const vbar::testbeds::DriverElsewhere& elsewhere) {
-    return complain(vbar::files::become(elsewhere.program, {argv + 1, argv + argc}).c_str(), kFailed);
+    return complain(vbar::files::become(elsewhere.program, {argv + 1, argv + argc}), kFailed);
   } catch (const vbar::mission::MissionError& error) {
     return complain(error.what(), kRefused);
   } catch (const vbar::report::FolderRefused& error) {
@@ -162,6 +159,7 @@ int execute(int argc, char** argv) {
   }
   CLI::App program{"Flight-software harness for spacecraft rendezvous and formation flying"};
   program.require_subcommand(1);
+  vbar::files::print_parse_errors_by_line(program);
   program.footer(fmt::format("{}\n\n{}", kOtherProgramsHelp, kExitCodeHelp));
   program.set_version_flag("--version", fmt::format("vbar {}, commit {}, {}, {}", build_version(), kBuildCommit,
                                                     build_compiler(), build_type()));

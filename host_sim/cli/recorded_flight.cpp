@@ -20,6 +20,7 @@
 #include "host_sim/cli/build_info.h"
 #include "host_sim/cli/verdicts.h"
 #include "host_sim/files/data_stream.h"
+#include "host_sim/files/error_lines.h"
 #include "host_sim/files/output_file.h"
 #include "host_sim/files/own_program.h"
 #include "host_sim/installation/sensor_kinds.h"
@@ -317,10 +318,7 @@ void report_rejections(const report::Summary& summary) {
                  source.packets_rejected);
 }
 
-/// Prints what the line to the flight computer cannot carry in time, as known before the flight and as measured.
-void report_line(const std::string& slow_line) {
-  if (!slow_line.empty()) fmt::print("link: {}\n", slow_line);
-}
+/// Prints what the line to the flight computer could not carry in time.
 void report_line(const report::Summary::Link& link) {
   if (link.step_share_max > 1.0)
     fmt::print("link: the bytes of a step took up to {:.0f} % of its period at {} baud\n", 100.0 * link.step_share_max,
@@ -329,8 +327,9 @@ void report_line(const report::Summary::Link& link) {
 
 }  // namespace
 
-void report_data(const std::vector<std::string>& notes) {
-  for (const std::string& note : notes) fmt::print("data: {}\n", note);
+void report_before_flight(const AssembledMission& assembled) {
+  for (const std::string& note : assembled.data_notes()) fmt::print("data: {}\n", note);
+  if (const std::string slow = assembled.slow_line(); !slow.empty()) fmt::print("link: {}\n", slow);
 }
 
 std::unique_ptr<AssembledMission> assemble(const mission::Mission& mission, bool start) {
@@ -356,8 +355,7 @@ std::optional<std::string> fly_into(RunFolder& folder, const FlightOrder& order,
                                     report::RunRecord& record) {
   record.summary.data_notes = assembled.data_notes();
   if (!order.quiet) {
-    report_data(record.summary.data_notes);
-    report_line(assembled.slow_line());
+    report_before_flight(assembled);
     std::fflush(stdout);  // before the flight
   }
   if (!order.mission.record.tables) folder.leave_out_tables();
@@ -413,7 +411,7 @@ void report_flight(const std::filesystem::path& folder, const std::filesystem::p
 int exit_code_of(const report::RunRecord& record, const std::optional<std::string>& trouble,
                  const std::filesystem::path& name, bool quiet) {
   if (trouble) {
-    fmt::print(stderr, "vbar: {}: run incomplete: {}\n", name.string(), *trouble);
+    files::print_error("vbar", fmt::format("{}: run incomplete: {}", name.string(), *trouble));
     return *trouble == kInterruption ? kInterrupted : kFailed;
   }
   const std::string line = report::verdict_line(record.summary);
@@ -423,7 +421,7 @@ int exit_code_of(const report::RunRecord& record, const std::optional<std::strin
     return kDone;
   }
   std::fflush(stdout);  // the verdict is the last line
-  fmt::print(stderr, "vbar: {}: {}\n", name.string(), line);
+  files::print_error("vbar", fmt::format("{}: {}", name.string(), line));
   return outcome == report::Outcome::kNeverNavigated ? kNeverNavigated : kNotAchieved;
 }
 

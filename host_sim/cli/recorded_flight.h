@@ -65,8 +65,9 @@ struct FlightOrder {
 /// Throws Refused.
 [[nodiscard]] std::unique_ptr<AssembledMission> assemble(const mission::Mission& mission, bool start);
 
-/// Prints what the truth model states about missing and predicted data.
-void report_data(const std::vector<std::string>& notes);
+/// Prints what is known before the first step: missing and predicted data, and a serial line whose rate cannot carry
+/// the packets of that step.
+void report_before_flight(const AssembledMission& assembled);
 
 /// The record before the first step: what is known already.
 [[nodiscard]] report::RunRecord record_at_start(const FlightOrder& order);

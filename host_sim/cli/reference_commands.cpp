@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "host_sim/cli/commands.h"
+#include "host_sim/files/error_lines.h"
 #include "host_sim/installation/sensor_kinds.h"
 #include "host_sim/mission/load.h"
 #include "host_sim/mission/name_search.h"
@@ -94,7 +95,8 @@ int print_lines(std::vector<DescribedKey> keys, const std::string& word) {
                            [&](const DescribedKey& entry) { return rank_of(entry, word); });
   std::ranges::for_each(keys, print_entry);
   if (!keys.empty()) return kDone;
-  fmt::print(stderr, "vbar: no key of a mission has the word '{}'{}\n", word, mission::word_meant(word, names));
+  files::print_error("vbar",
+                     fmt::format("no key of a mission has the word '{}'{}", word, mission::word_meant(word, names)));
   return kRefused;
 }
 
@@ -161,8 +163,9 @@ int print_lines(const std::vector<DescribedTable>& tables, const std::string& wo
   if (has_printed) return kDone;
   const std::vector<report::ExplainedWord> values = report::explained_words();
   const bool is_value = std::ranges::find(values, word, &report::ExplainedWord::word) != values.end();
-  fmt::print(stderr, "vbar: no column of a table has the word '{}'{}\n", word,
-             is_value ? fmt::format("; it is a value: vbar explain {}", word) : mission::word_meant(word, names));
+  files::print_error("vbar", fmt::format("no column of a table has the word '{}'{}", word,
+                                         is_value ? fmt::format("; it is a value: vbar explain {}", word)
+                                                  : mission::word_meant(word, names)));
   return kRefused;
 }
 
@@ -236,8 +239,8 @@ int print_explanation(const std::vector<ExplainedWord>& words, std::string name)
   }
   if (printed > 0) return kDone;
   const auto nearest = mission::nearest_name(name, names);
-  fmt::print(stderr, "vbar: a run prints no word '{}'{}; vbar explain lists them\n", name,
-             nearest ? fmt::format(", did you mean {}?", *nearest) : "");
+  files::print_error("vbar", fmt::format("a run prints no word '{}'{}; vbar explain lists them", name,
+                                         nearest ? fmt::format(", did you mean {}?", *nearest) : ""));
   return kRefused;
 }
 

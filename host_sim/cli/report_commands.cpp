@@ -11,6 +11,7 @@
 
 #include "host_sim/cli/commands.h"
 #include "host_sim/cli/verdicts.h"
+#include "host_sim/files/error_lines.h"
 #include "host_sim/files/output_file.h"
 #include "host_sim/installation/sensor_kinds.h"
 #include "host_sim/mission/data_directory.h"
@@ -32,7 +33,7 @@ namespace {
 report::RunRecord read_run(const std::filesystem::path& folder) {
   report::RunRecord record = report::read_run(folder, sensors::extensions());
   for (const report::SourceFigures& source : record.summary.sources) testbeds::require_driver(source.kind);
-  for (const std::string& note : record.reading_notes) fmt::print(stderr, "vbar: {}\n", note);
+  for (const std::string& note : record.reading_notes) files::print_error("vbar", note);
   return record;
 }
 
@@ -95,7 +96,7 @@ int view_command(const ViewOptions& options) {
     std::string note;
     const report::RunRecord& record = records.emplace_back(read_run(folder));
     const std::optional<mission::Mission>& mission = missions.emplace_back(mission_of_run(folder, note));
-    if (!note.empty()) fmt::print(stderr, "vbar: {}\n", note);
+    if (!note.empty()) files::print_error("vbar", note);
     runs.push_back({names[k], record, mission ? &*mission : nullptr, note});
   }
   const std::filesystem::path& first = options.run_folders.front();

@@ -17,6 +17,7 @@
 #include "host_sim/cli/commands.h"
 #include "host_sim/cli/recorded_flight.h"
 #include "host_sim/cli/replay_input.h"
+#include "host_sim/files/error_lines.h"
 #include "host_sim/files/output_file.h"
 #include "host_sim/installation/sensor_kinds.h"
 #include "host_sim/mission/data_file.h"
@@ -188,7 +189,7 @@ void announce(const FlownRun& run, const twins::RunLog& log) {
 int refuse(const fs::path& log, const Verdict& verdict) {
   const std::string& sentence = verdict.sentence;
   const std::string text = sentence.starts_with(log.string()) ? sentence : log.string() + " " + sentence;
-  fmt::print(stderr, "vbar: {}\n", text);
+  files::print_error("vbar", text);
   return verdict.code;
 }
 

@@ -192,7 +192,7 @@ std::string printable(std::string_view message) {
   while (!message.empty()) {
     const std::size_t bytes = character_bytes(message);
     const std::string_view character = message.substr(0, std::max<std::size_t>(1, bytes));
-    if (bytes == 0 || (character != "\n" && is_control(character)))
+    if (bytes == 0 || is_control(character))
       shown += '?';
     else
       shown += character;

@@ -101,8 +101,8 @@ class TextLines {
 /// Text of a file for a message: in quotation marks, at most 100 characters of it, without control characters.
 [[nodiscard]] std::string quoted(std::string_view text);
 
-/// A message that may hold the text of foreign files and their names: a question mark in place of each control
-/// character, so that no terminal acts upon it, and of each byte that is not UTF-8. Line feeds stay.
+/// A message that may hold the text of foreign files and their names, on one line: a question mark in place of each
+/// control character, so that no terminal acts upon it, and of each byte that is not UTF-8.
 [[nodiscard]] std::string printable(std::string_view message);
 
 }  // namespace vbar::files

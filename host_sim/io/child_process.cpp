@@ -20,6 +20,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "host_sim/io/address_sanitizer.h"
+
 namespace vbar::io {
 
 namespace {
@@ -44,16 +46,13 @@ std::uint64_t data_bytes() {
 
 }  // namespace
 
-bool limit_memory([[maybe_unused]] std::uint64_t bytes) {
-#ifdef __SANITIZE_ADDRESS__
-  return true;
-#else
+bool limit_memory(std::uint64_t bytes) {
+  if (kAddressSanitizer) return true;
   struct rlimit limit {};
   if (::getrlimit(RLIMIT_DATA, &limit) != 0) return false;
   limit.rlim_cur = std::min<rlim_t>(limit.rlim_max, data_bytes() + bytes);
   limit.rlim_max = limit.rlim_cur;  // the program cannot raise it again
   return ::setrlimit(RLIMIT_DATA, &limit) == 0;
-#endif
 }
 
 bool reap_leader(pid_t leader, int options, bool ends_group, int& status, rusage& usage) {

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "fsw/vision/pose/sizes.h"
+#include "host_sim/files/error_lines.h"
 #include "host_sim/mission/body_file.h"
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/training/keypoint_choice.h"
@@ -65,11 +66,12 @@ int main(int argc, char** argv) {
   app.add_option("target", order.target, "the target: a body file of data/bodies")->required();
   app.add_flag("--own", order.shows_own, "take the keypoints that the body file states; only draw them");
   app.add_option("--picture", order.picture, "SVG file of the model with its keypoints");
+  vbar::files::print_parse_errors_by_line(app);
   CLI11_PARSE(app, argc, argv);
   try {
     answer(order);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "vbar_target_keypoints: {}\n", error.what());
+    vbar::files::print_error("vbar_target_keypoints", error.what());
     return 1;
   }
   return 0;

@@ -14,6 +14,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "host_sim/files/error_lines.h"
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/training/crop_maker.h"
 #include "host_sim/training/shard_file.h"
@@ -72,13 +73,14 @@ int main(int argc, char** argv) {
   app.add_option("--part", order.part, "part of the work, from 0")->check(CLI::Range(0, 63))->capture_default_str();
   app.add_option("--parts", order.parts, "number of parts")->check(CLI::Range(1, 64))->capture_default_str();
   app.add_option("--out", order.out, "folder of the shards")->required();
+  vbar::files::print_parse_errors_by_line(app);
   CLI11_PARSE(app, argc, argv);
   // Mesa's own threads cost more than they gain on small images; processes share the work.
   setenv("LP_NUM_THREADS", "0", 0);
   try {
     make_shards(order);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "vbar_training_crops: {}\n", error.what());
+    vbar::files::print_error("vbar_training_crops", error.what());
     return 1;
   }
   return 0;

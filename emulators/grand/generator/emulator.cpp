@@ -8,12 +8,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "hil_drivers/wire/emulator_files.h"
+
 namespace vbar::grand::bench {
 namespace {
 
 constexpr const char* kPpsSocket = "pps.sock";
 constexpr const char* kFaultSocket = "faults.sock";
-constexpr const char* kFaultFile = "faults.jsonl";
 
 }  // namespace
 
@@ -23,7 +24,7 @@ Bench::Bench(boost::asio::io_context& context, const Scenario& scenario, const s
       edges_(std::make_unique<EdgeBroadcaster>((directory_.path() / kPpsSocket).string())),
       engine_(std::make_unique<GeneratorEngine>(context, scenario, data_directory, directory_.path(), make_receiver)),
       control_(make_control_servers(context, *engine_, scenario.control)),
-      faults_(std::make_unique<FaultInjector>(*engine_, *control_, *edges_, directory_.path() / kFaultFile)),
+      faults_(std::make_unique<FaultInjector>(*engine_, *control_, *edges_, directory_.path() / wire::kFaultsFile)),
       fault_line_(std::make_unique<emulators::ControlLine>(
           context, directory_.path() / kFaultSocket,
           [this, vehicles = scenario.vehicle_names()](const std::string& line, const emulators::Answer& answer) {

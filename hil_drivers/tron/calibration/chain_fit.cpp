@@ -9,6 +9,7 @@
 #include <Eigen/Dense>
 #include <ceres/ceres.h>
 
+#include "hil_drivers/tron/calibration/chain_costs.h"
 #include "hil_drivers/tron/geometry/calibration.h"
 
 namespace vbar::tron::calibrate {
@@ -16,13 +17,9 @@ namespace {
 
 using Eigen::Isometry3d;
 
-// Places within the blocks of both arms.
-constexpr int kOffset = 0, kLink = 6, kFlex = 36, kMount = 38, kCameraArm = 44, kBase = 44, kTargetArm = 50;
-constexpr int kLens = 9, kPose = 6, kSpline = 4;
-constexpr double kCornerLoss = 2.5;  ///< in sigmas
+constexpr double kCornerLoss = 2.5, kViconLoss = 4.0;  ///< in sigmas
 
-template <typename T>
-using Vector6 = Eigen::Matrix<T, 6, 1>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 struct Parameters {
   std::array<double, kLens> lens{};
@@ -34,200 +31,26 @@ struct Parameters {
   std::vector<std::array<double, kPose>> images;            ///< from their starts
 };
 
-/// What the parameters are counted from.
-struct Start {
-  Calibration calibration;
-  Isometry3d camera_mount, target_mount, target_base, V_L, C_object, object_T;
-  double camera_gravity = -1.0, target_gravity = 1.0;
-};
-
-Start start_of(const Calibration& c) {
-  Start start{c,
-              c.camera_arm.mount.isometry(),
-              c.target_arm.mount.isometry(),
-              c.target_arm.base.isometry(),
-              c.vicon.T_V_L.isometry(),
-              c.vicon.T_C_object.isometry(),
-              c.vicon.T_object_T.isometry()};
-  start.camera_gravity = c.camera_arm.base.isometry().linear()(2, 2) >= 0.0 ? 1.0 : -1.0;
-  start.target_gravity = start.target_base.linear()(2, 2) >= 0.0 ? 1.0 : -1.0;
-  return start;
-}
-
-template <typename T>
-Rigid<T> cast(const Isometry3d& pose) {
-  return pose.cast<T>();
-}
-
-/// Carriage, camera's arm and mount.
-struct CameraChain {
-  const Start* start;
-  Joints joints_rad;
-  double carriage_m;
-  int first_knot;  ///< first of the four that act here
-
-  CameraChain(const Start& s, const Posture& posture)
-      : start(&s), joints_rad(posture.camera_rad), carriage_m(posture.carriage_m) {
-    const TrackGrid& grid = s.calibration.track.grid;
-    const auto count = static_cast<double>(s.calibration.track.knots.size());
-    first_knot =
-        static_cast<int>(std::clamp(std::floor((carriage_m - grid.first_m) / grid.step_m), 1.0, count - 3.0)) - 1;
-  }
-
-  template <typename T>
-  Rigid<T> T_L_C(const T* arm, const std::array<const T*, kSpline>& knots, const T* scale) const {
-    // The four control points as a track of one cell.
-    TrackGrid cell = start->calibration.track.grid;
-    cell.first_m += first_knot * cell.step_m;
-    T four[kSpline * kTrackErrors];
-    for (std::size_t k = 0; k < kSpline; ++k)
-      for (std::size_t e = 0; e < kTrackErrors; ++e) four[k * kTrackErrors + e] = knots[k][e];
-    const ArmCalibration& design = start->calibration.camera_arm;
-    return T_L_carriage<T>(cell, carriage_m, four, kSpline, *scale) * cast<T>(design.base.isometry()) *
-           T_base_flange<T>(design.lengths, joints_rad.data(), start->camera_gravity,
-                            {arm + kOffset, arm + kLink, arm + kFlex}) *
-           cast<T>(start->camera_mount) * rigid_of(arm + kMount);
-  }
-};
-
-struct TargetChain {
-  const Start* start;
-  Joints joints_rad;
-
-  template <typename T>
-  Rigid<T> T_L_T(const T* arm) const {
-    return cast<T>(start->target_base) * rigid_of(arm + kBase) *
-           T_base_flange<T>(start->calibration.target_arm.lengths, joints_rad.data(), start->target_gravity,
-                            {arm + kOffset, arm + kLink, arm + kFlex}) *
-           cast<T>(start->target_mount) * rigid_of(arm + kMount);
-  }
-};
-
-/// [rotation; translation] in the axes of `from`'s left frame; the rotation as sine about the axis.
-template <typename T>
-Vector6<T> difference_of(const Rigid<T>& from, const Rigid<T>& to) {
-  const Eigen::Matrix<T, 3, 3> turn = to.linear() * from.linear().transpose();
-  Vector6<T> difference;
-  difference << T(0.5) * (turn(2, 1) - turn(1, 2)), T(0.5) * (turn(0, 2) - turn(2, 0)),
-      T(0.5) * (turn(1, 0) - turn(0, 1)), to.translation() - from.translation();
-  return difference;
-}
-
-template <typename T>
-Rigid<T> image_pose(const Isometry3d& start, const T* six) {
-  Rigid<T> pose = cast<T>(start);
-  const Rigid<T> moved = rigid_of(six);
-  pose.linear() = (moved.linear() * pose.linear()).eval();
-  pose.translation() += moved.translation();
-  return pose;
-}
-
 Matrix6 whitening(const Matrix6& covariance) {
   const Eigen::LLT<Matrix6> llt(covariance);
   return llt.matrixL().solve(Matrix6::Identity());
 }
 
-template <typename T>
-void write_residual(const Matrix6& whiten, const Vector6<T>& difference, T* residual) {
-  Eigen::Map<Vector6<T>> out(residual);
-  for (int row = 0; row < 6; ++row) {
-    T sum = T(0.0);
-    for (int k = 0; k <= row; ++k) sum += whiten(row, k) * difference[k];
-    out[row] = sum;
-  }
+void read_arm(const ArmCalibration& arm, double* block) {
+  std::ranges::copy(arm.offset_rad, block + kOffset);
+  for (std::size_t k = 0; k < arm.link.size(); ++k) std::ranges::copy(arm.link[k], block + kLink + 6 * k);
+  std::ranges::copy(arm.flex_rad_m, block + kFlex);
 }
-
-struct CornerCost {
-  Isometry3d start;
-  fsw::Vector3 point_T;
-  fsw::Vector2 px;
-  double sigma_px;
-
-  template <typename T>
-  bool operator()(const T* lens, const T* image, T* residual) const {
-    const Eigen::Matrix<T, 3, 1> point = image_pose(start, image) * Eigen::Matrix<T, 3, 1>(point_T.cast<T>());
-    if (!(point.z() > T(0.01))) return false;
-    const auto seen = project_point<T>({lens[0], lens[1], lens[2], lens[3]}, lens + 4, point);
-    residual[0] = (seen.x() - px.x()) / sigma_px;
-    residual[1] = (seen.y() - px.y()) / sigma_px;
-    return true;
-  }
-};
-
-struct ArmsCost {
-  Isometry3d start;
-  CameraChain camera;
-  TargetChain target;
-  Matrix6 whiten;
-
-  template <typename T>
-  bool operator()(const T* image, const T* camera_arm, const T* target_arm, const T* k0, const T* k1, const T* k2,
-                  const T* k3, const T* scale, T* residual) const {
-    const Rigid<T> T_C_T = camera.T_L_C<T>(camera_arm, {k0, k1, k2, k3}, scale).inverse() * target.T_L_T<T>(target_arm);
-    write_residual<T>(whiten, difference_of<T>(image_pose(start, image), T_C_T), residual);
-    return true;
-  }
-};
-
-struct ViconCameraCost {
-  CameraChain camera;
-  Isometry3d T_V_object;
-  Matrix6 whiten;
-
-  template <typename T>
-  bool operator()(const T* V_L, const T* camera_arm, const T* k0, const T* k1, const T* k2, const T* k3, const T* scale,
-                  const T* C_object, T* residual) const {
-    const Rigid<T> model = cast<T>(camera.start->V_L) * rigid_of(V_L) *
-                           camera.T_L_C<T>(camera_arm, {k0, k1, k2, k3}, scale) * cast<T>(camera.start->C_object) *
-                           rigid_of(C_object);
-    write_residual<T>(whiten, difference_of<T>(cast<T>(T_V_object), model), residual);
-    return true;
-  }
-};
-
-struct ViconTargetCost {
-  TargetChain target;
-  Isometry3d T_V_object;
-  Matrix6 whiten;
-
-  /// T_V_object T_object_T against T_V_L T_L_T: both of the target's frame.
-  template <typename T>
-  bool operator()(const T* V_L, const T* target_arm, const T* object_T, T* residual) const {
-    const Rigid<T> T_object_T = cast<T>(target.start->object_T) * rigid_of(object_T);
-    const Rigid<T> model =
-        cast<T>(target.start->V_L) * rigid_of(V_L) * target.T_L_T<T>(target_arm) * T_object_T.inverse();
-    write_residual<T>(whiten, difference_of<T>(cast<T>(T_V_object), model), residual);
-    return true;
-  }
-};
-
-/// Values of a block known with standard deviations.
-template <int N>
-struct PriorCost {
-  std::array<double, N> mean, sigma;
-
-  template <typename T>
-  bool operator()(const T* values, T* residual) const {
-    for (std::size_t k = 0; k < N; ++k) residual[k] = (values[k] - mean[k]) / sigma[k];
-    return true;
-  }
-};
-
-struct AspectCost {
-  double ratio, sigma;
-
-  template <typename T>
-  bool operator()(const T* lens, T* residual) const {
-    residual[0] = (lens[1] / lens[0] - ratio) / sigma;
-    return true;
-  }
-};
 
 class Fit {
  public:
   Fit(const BoardDesign& board, const Isometry3d& T_target_board, const std::vector<FitImage>& images,
       const Calibration& from, const FitSettings& settings)
-      : board_(board), T_target_board_(T_target_board), images_(images), settings_(settings), start_(start_of(from)) {
+      : board_(board),
+        T_target_board_(T_target_board),
+        images_(images),
+        settings_(settings),
+        start_(chain_start(from)) {
     const LensCalibration& lens = from.lens;
     values_.lens = {lens.fx_px,         lens.fy_px,         lens.cx_px,         lens.cy_px,        lens.distortion[0],
                     lens.distortion[1], lens.distortion[2], lens.distortion[3], lens.distortion[4]};
@@ -269,12 +92,6 @@ class Fit {
   }
 
  private:
-  static void read_arm(const ArmCalibration& arm, double* block) {
-    std::ranges::copy(arm.offset_rad, block + kOffset);
-    for (std::size_t k = 0; k < arm.link.size(); ++k) std::ranges::copy(arm.link[k], block + kLink + 6 * k);
-    std::ranges::copy(arm.flex_rad_m, block + kFlex);
-  }
-
   static void write_arm(const double* block, ArmCalibration& arm) {
     std::copy_n(block + kOffset, 6, arm.offset_rad.begin());
     for (std::size_t k = 0; k < arm.link.size(); ++k) std::copy_n(block + kLink + 6 * k, 6, arm.link[k].begin());
@@ -314,57 +131,56 @@ class Fit {
     for (std::size_t k = 0; k < images_.size(); ++k)
       for (const Corner& corner : images_[k].measurement.corners)
         problem_.AddResidualBlock(
-            new ceres::AutoDiffCostFunction<CornerCost, 2, kLens, kPose>(new CornerCost{
-                images_[k].T_C_T, T_target_board_ * board_.corner(corner.id), corner.px, images_[k].sigma_px}),
+            corner_cost(images_[k].T_C_T, T_target_board_ * board_.corner(corner.id), corner.px, images_[k].sigma_px)
+                .release(),
             new ceres::HuberLoss(kCornerLoss), values_.lens.data(), values_.images[k].data());
   }
 
-  double* knot(const CameraChain& chain, int k) {
-    return values_.knots[static_cast<std::size_t>(chain.first_knot + k)].data();
+  /// Returns the blocks of the knots that act at a posture.
+  std::array<double*, kSpline> knots(const Posture& posture) {
+    const auto first = static_cast<std::size_t>(first_knot_at(start_.calibration.track, posture.carriage_m));
+    std::array<double*, kSpline> blocks{};
+    for (std::size_t k = 0; k < kSpline; ++k) blocks[k] = values_.knots[first + k].data();
+    return blocks;
   }
 
   void add_arms() {
     for (std::size_t k = 0; k < images_.size(); ++k) {
       if (images_[k].measurement.corners.empty()) continue;
-      const CameraChain camera(start_, images_[k].measurement.posture);
-      const TargetChain target{&start_, images_[k].measurement.posture.target_rad};
-      problem_.AddResidualBlock(
-          new ceres::AutoDiffCostFunction<ArmsCost, 6, kPose, kCameraArm, kTargetArm, 5, 5, 5, 5, 1>(new ArmsCost{
-              images_[k].T_C_T, camera, target, whitening(scatter_covariance(settings_.arms, images_[k].T_C_T))}),
-          nullptr, values_.images[k].data(), values_.camera.data(), values_.target.data(), knot(camera, 0),
-          knot(camera, 1), knot(camera, 2), knot(camera, 3), &values_.scale);
+      const Posture& posture = images_[k].measurement.posture;
+      const auto [k0, k1, k2, k3] = knots(posture);
+      const Matrix6 whiten = whitening(scatter_covariance(settings_.arms, images_[k].T_C_T));
+      problem_.AddResidualBlock(arms_cost(start_, posture, images_[k].T_C_T, whiten).release(), nullptr,
+                                values_.images[k].data(), values_.camera.data(), values_.target.data(), k0, k1, k2, k3,
+                                &values_.scale);
     }
   }
 
   void add_vicon() {
     const auto weights = [&](double rotation_rad) {
-      Vector6<double> sigma;
+      Vector6 sigma;
       const double place_m = std::hypot(settings_.vicon.place_m, settings_.arms.place_m);
       sigma << rotation_rad, rotation_rad, rotation_rad, place_m, place_m, place_m;
       return Matrix6(sigma.cwiseInverse().asDiagonal());
     };
     for (const FitImage& image : images_) {
       if (!image.measurement.vicon) continue;
-      const CameraChain camera(start_, image.measurement.posture);
-      const TargetChain target{&start_, image.measurement.posture.target_rad};
+      const Posture& posture = image.measurement.posture;
       const ViconObjects& vicon = *image.measurement.vicon;
-      problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<ViconCameraCost, 6, 6, kCameraArm, 5, 5, 5, 5, 1, 6>(
-                                    new ViconCameraCost{camera, vicon.T_V_camera, weights(settings_.vicon.camera_rad)}),
-                                new ceres::HuberLoss(4.0), values_.V_L.data(), values_.camera.data(), knot(camera, 0),
-                                knot(camera, 1), knot(camera, 2), knot(camera, 3), &values_.scale,
-                                values_.C_object.data());
-      problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<ViconTargetCost, 6, 6, kTargetArm, 6>(
-                                    new ViconTargetCost{target, vicon.T_V_target, weights(settings_.vicon.target_rad)}),
-                                new ceres::HuberLoss(4.0), values_.V_L.data(), values_.target.data(),
-                                values_.object_T.data());
+      const auto [k0, k1, k2, k3] = knots(posture);
+      problem_.AddResidualBlock(
+          vicon_camera_cost(start_, posture, vicon.T_V_camera, weights(settings_.vicon.camera_rad)).release(),
+          new ceres::HuberLoss(kViconLoss), values_.V_L.data(), values_.camera.data(), k0, k1, k2, k3, &values_.scale,
+          values_.C_object.data());
+      problem_.AddResidualBlock(
+          vicon_target_cost(start_, posture, vicon.T_V_target, weights(settings_.vicon.target_rad)).release(),
+          new ceres::HuberLoss(kViconLoss), values_.V_L.data(), values_.target.data(), values_.object_T.data());
     }
   }
 
-  template <int N>
+  template <std::size_t N>
   void add_prior(double* block, const std::array<double, N>& mean, const std::array<double, N>& sigma) {
-    if (!problem_.HasParameterBlock(block)) return;
-    problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<PriorCost<N>, N, N>(new PriorCost<N>{mean, sigma}),
-                              nullptr, block);
+    if (problem_.HasParameterBlock(block)) problem_.AddResidualBlock(prior_cost(mean, sigma).release(), nullptr, block);
   }
 
   void fill_arm(double* sigma) const {
@@ -388,9 +204,8 @@ class Fit {
       lens_sigma[4 + k] = std::max(least[k], p.distortion_ratio * std::abs(values_.lens[4 + k]));
     add_prior<kLens>(values_.lens.data(), values_.lens, lens_sigma);
     if (problem_.HasParameterBlock(values_.lens.data()))
-      problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<AspectCost, 1, kLens>(
-                                    new AspectCost{values_.lens[1] / values_.lens[0], p.pixel_aspect}),
-                                nullptr, values_.lens.data());
+      problem_.AddResidualBlock(aspect_cost(values_.lens[1] / values_.lens[0], p.pixel_aspect).release(), nullptr,
+                                values_.lens.data());
     std::array<double, kCameraArm> camera_sigma{};
     fill_arm(camera_sigma.data());
     add_prior<kCameraArm>(values_.camera.data(), {}, camera_sigma);
@@ -491,31 +306,21 @@ class Fit {
   Isometry3d T_target_board_;
   const std::vector<FitImage>& images_;
   FitSettings settings_;
-  Start start_;
+  ChainStart start_;
   Parameters values_;
   ceres::Problem problem_;
 };
 
 Eigen::MatrixXd jacobian_of_arms(const FitResult& fit, const Posture& posture) {
-  const Start start = start_of(fit.calibration);
-  const CameraChain camera(start, posture);
-  const TargetChain target{&start, posture.target_rad};
+  const ChainStart start = chain_start(fit.calibration);
   const Isometry3d T_C_T = T_C_T_of_arms(fit.calibration, posture);
   Parameters at;
-  Matrix6 identity = Matrix6::Identity();
-  ceres::AutoDiffCostFunction<ArmsCost, 6, kPose, kCameraArm, kTargetArm, 5, 5, 5, 5, 1> cost(
-      new ArmsCost{T_C_T, camera, target, identity});
+  const Cost cost = arms_cost(start, posture, T_C_T, Matrix6::Identity());
+  const int first_knot = first_knot_at(start.calibration.track, posture.carriage_m);
   const std::array<double, kPose> image{};
-  const auto fill = [](const ArmCalibration& arm, double* block) {
-    std::ranges::copy(arm.offset_rad, block + kOffset);
-    for (std::size_t k = 0; k < arm.link.size(); ++k) std::ranges::copy(arm.link[k], block + kLink + 6 * k);
-    std::ranges::copy(arm.flex_rad_m, block + kFlex);
-  };
-  fill(fit.calibration.camera_arm, at.camera.data());
-  fill(fit.calibration.target_arm, at.target.data());
-  const auto knot = [&](int k) {
-    return fit.calibration.track.knots[static_cast<std::size_t>(camera.first_knot + k)].data();
-  };
+  read_arm(fit.calibration.camera_arm, at.camera.data());
+  read_arm(fit.calibration.target_arm, at.target.data());
+  const auto knot = [&](int k) { return fit.calibration.track.knots[static_cast<std::size_t>(first_knot + k)].data(); };
   const std::array<const double*, 8> blocks{
       image.data(), at.camera.data(), at.target.data(), knot(0),
       knot(1),      knot(2),          knot(3),          &fit.calibration.track.scale};
@@ -526,13 +331,13 @@ Eigen::MatrixXd jacobian_of_arms(const FitResult& fit, const Posture& posture) {
   Eigen::Matrix<double, 6, 1> by_scale, residual;
   std::array<double*, 8> jacobians{by_image.data(),   by_camera.data(),  by_target.data(),  by_knot[0].data(),
                                    by_knot[1].data(), by_knot[2].data(), by_knot[3].data(), by_scale.data()};
-  cost.Evaluate(blocks.data(), residual.data(), jacobians.data());
+  cost->Evaluate(blocks.data(), residual.data(), jacobians.data());
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(6, fit.covariance.cols());
   jacobian.leftCols<kCameraArm>() = by_camera;
   jacobian.middleCols<kTargetArm>(kCameraArm) = by_target;
   jacobian.col(kCameraArm + kTargetArm) = by_scale;
   for (int k = 0; k < kSpline; ++k)
-    jacobian.middleCols<kTrackErrors>(kCameraArm + kTargetArm + 1 + kTrackErrors * (camera.first_knot + k)) =
+    jacobian.middleCols<kTrackErrors>(kCameraArm + kTargetArm + 1 + kTrackErrors * (first_knot + k)) =
         by_knot[static_cast<std::size_t>(k)];
   return jacobian;
 }
@@ -545,7 +350,7 @@ Eigen::MatrixXd jacobian_of_vicon(const FitResult& fit, const Posture& posture) 
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(6, fit.covariance.cols());
   const Eigen::Index first = fit.covariance.cols() - 2 * kPose;
   for (int k = 0; k < kPose; ++k) {
-    const Vector6<double> step = kStep * Vector6<double>::Unit(k);
+    const Vector6 step = kStep * Vector6::Unit(k);
     const Isometry3d moved = rigid_of(step.data());
     jacobian.col(first + k) = pose_difference(T_C_T, C_object * moved * C_object.inverse() * T_C_T) / kStep;
     jacobian.col(first + kPose + k) = pose_difference(T_C_T, T_C_T * moved) / kStep;

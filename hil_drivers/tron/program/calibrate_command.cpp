@@ -1,22 +1,202 @@
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <filesystem>
 #include <fstream>
+#include <functional>
+#include <iostream>
 #include <memory>
+#include <optional>
+#include <span>
+#include <stdexcept>
 #include <string>
+#include <variant>
 
 #include <CLI/CLI.hpp>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include "hil_drivers/common/emulator_process.h"
 #include "hil_drivers/tron/calibration/procedure.h"
+#include "hil_drivers/tron/laboratory.h"
+#include "hil_drivers/tron/motion_planning/arm_planner.h"
 #include "hil_drivers/tron/program/commands.h"
-#include "hil_drivers/tron/program/wired_testbed.h"
 #include "host_sim/files/data_stream.h"
+#include "host_sim/files/error_lines.h"
 #include "host_sim/files/output_file.h"
+#include "host_sim/io/byte_channel.h"
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/sensors/settings/camera_file.h"
 #include "host_sim/simulation/exit_codes.h"
+
+namespace vbar::tron::calibrate {
+namespace {
+
+// Testbed under calibration, over its wires.
+
+struct WiredBenchSettings {
+  TestbedDesign bench;
+  std::string bench_command;  ///< command line of an emulator; empty: the laboratory of the bench file
+  std::uint64_t seed = 1;
+  std::filesystem::path data_directory;
+  twins::camera::Region region{160, 100, 1600, 1000};
+  int bits = 12;
+  std::function<void(const std::string&)> report;  ///< sentences for the operator
+};
+
+class WiredTestbed final : public CalibrationTestbed {
+ public:
+  /// Starts an emulator and opens all devices. Throws std::runtime_error.
+  explicit WiredTestbed(const WiredBenchSettings& settings);
+
+  [[nodiscard]] TestbedIdentity identity() override;
+  void mount(Mounted what) override;
+  [[nodiscard]] bool move(const Posture& posture) override;
+  [[nodiscard]] MeasuredPosture measure() override;
+  void light(const LightShares& shares) override;
+  [[nodiscard]] CalibrationImage take(double exposure_s) override;
+
+  /// Returns the emulator's table of true poses, which exists until this object ends; empty for a real testbed.
+  [[nodiscard]] std::filesystem::path truth() const;
+
+ private:
+  WiredBenchSettings settings_;
+  WiredDevices laboratory_;
+  std::optional<testbeds::EmulatorProcess> process_;
+  std::filesystem::path control_;
+  TestbedBodies bodies_;
+  PathPlanner paths_;
+  double lamp_azimuth_rad_;
+};
+
+constexpr int kTries = 3;               ///< tries of a motion that the controllers interrupt
+constexpr double kLightsDelay_s = 0.1;  ///< bench time: nothing acknowledges a lighting level
+constexpr std::chrono::seconds kControlPatience{10};
+
+DeviceSettings device_settings(const WiredBenchSettings& settings) {
+  DeviceSettings devices;
+  devices.bench = settings.bench;
+  devices.vicon_rotation = settings.bench.vicon.rotation;
+  devices.is_emulated = !settings.bench_command.empty();
+  devices.region = settings.region;
+  devices.converter_bits = settings.bits;
+  devices.report = settings.report;
+  // An emulated camera draws its images meanwhile, on a computer that may be busy.
+  if (devices.is_emulated) devices.timeout = std::chrono::seconds(60);
+  return devices;
+}
+
+/// A line to the control socket of an emulator, and its answer.
+std::string answer_of(const std::filesystem::path& socket, const std::string& line) {
+  const auto deadline = io::Clock::now() + kControlPatience;
+  const auto channel = io::connect_unix(socket.string(), deadline);
+  const std::string text = line + "\n";
+  channel->write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, deadline);
+  std::string answer;
+  while (answer.find('\n') == std::string::npos) {
+    const auto bytes = channel->read(deadline);
+    if (bytes.empty()) throw std::runtime_error("the emulated bench does not answer on its control line");
+    answer.append(bytes.begin(), bytes.end());
+  }
+  return answer;
+}
+
+WiredTestbed::WiredTestbed(const WiredBenchSettings& settings)
+    : settings_(settings),
+      laboratory_(device_settings(settings)),
+      bodies_(settings.bench),
+      paths_(settings.bench, bodies_),
+      lamp_azimuth_rad_(settings.bench.lamp.azimuth_low_rad) {
+  TestbedAddresses addresses = addresses_of(settings.bench);
+  if (!settings.bench_command.empty()) {
+    process_.emplace(settings.bench_command + laboratory_.port_options(), settings.seed, settings.data_directory);
+    addresses = read_addresses(process_->addresses_file());
+    control_ = addresses.control;
+  }
+  laboratory_.open(addresses);
+}
+
+TestbedIdentity WiredTestbed::identity() {
+  TestbedIdentity identity;
+  identity.is_emulated = laboratory_.camera_is_emulated();
+  // Vendor, model, serial number.
+  const std::string camera = laboratory_.camera();
+  const auto comma = camera.rfind(", ");
+  identity.camera_model = camera.substr(0, comma);
+  if (comma != std::string::npos) identity.camera_serial = camera.substr(comma + 2);
+  return identity;
+}
+
+void WiredTestbed::mount(Mounted what) {
+  const std::string name = what == Mounted::kBoard ? "board" : "target";
+  if (!control_.empty()) {
+    const std::string answer = answer_of(control_, fmt::format(R"({{"do": "mount", "what": "{}"}})", name));
+    if (answer.find("\"" + name + "\"") == std::string::npos)
+      throw std::runtime_error("the emulated bench does not mount the " + name + ": " + answer);
+    return;
+  }
+  std::cout << (what == Mounted::kBoard ? "Mount the calibration board on the plate of the target's arm"
+                                        : "Mount the mock-up on the plate of the target's arm")
+            << ", leave the room and press Enter." << std::endl;
+  std::string line;
+  if (!std::getline(std::cin, line)) throw std::runtime_error("nobody confirmed that the " + name + " is mounted");
+}
+
+bool WiredTestbed::move(const Posture& posture) {
+  for (int k = 0; k < kTries; ++k) {
+    const auto path = paths_.plan(laboratory_.posture(), posture);
+    if (std::holds_alternative<PathFailure>(path)) return false;
+    if (laboratory_.follow(motion_along(std::get<Path>(path))) == MotionEnd::kArrived) return true;
+    laboratory_.recover();
+  }
+  throw std::runtime_error(fmt::format("the robots interrupted a motion {} times", kTries));
+}
+
+MeasuredPosture WiredTestbed::measure() {
+  for (int k = 0; k < kTries; ++k) {
+    const auto measured = laboratory_.measure();
+    if (std::holds_alternative<MeasuredPlace>(measured)) {
+      const auto& place = std::get<MeasuredPlace>(measured);
+      MeasuredPosture result{place.posture, std::nullopt};
+      if (place.capture) result.vicon = ViconObjects{place.capture->T_V_camera, place.capture->T_V_target};
+      return result;
+    }
+    laboratory_.recover();
+  }
+  throw std::runtime_error(fmt::format("the robots interrupted a measurement {} times", kTries));
+}
+
+void WiredTestbed::light(const LightShares& shares) {
+  // The laboratory's table of light is not set: a power is the share of the largest value.
+  LightLevels levels;
+  levels.lamp_power = shares.lamp;
+  levels.lamp_azimuth_rad = shares.lamp > 0.0 ? shares.lamp_azimuth_rad : lamp_azimuth_rad_;
+  levels.box_power = shares.boxes;
+  laboratory_.light(levels);
+  const double travel_s = std::abs(levels.lamp_azimuth_rad - lamp_azimuth_rad_) / settings_.bench.lamp.speed_rad_s;
+  lamp_azimuth_rad_ = levels.lamp_azimuth_rad;
+  for (int k = 0; laboratory_.hold(kLightsDelay_s + travel_s) == MotionEnd::kInterrupted; ++k) {
+    if (k == kTries) throw std::runtime_error(fmt::format("the robots interrupted a pause {} times", kTries));
+    laboratory_.recover();
+  }
+}
+
+CalibrationImage WiredTestbed::take(double exposure_s) {
+  CalibrationImage image{settings_.region.width, settings_.region.height, settings_.bits,
+                         laboratory_.take(exposure_s).dn};
+  if (image.dn.size() != static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))
+    throw std::runtime_error(
+        fmt::format("camera: an image of {} pixels, expected {} x {}", image.dn.size(), image.width, image.height));
+  return image;
+}
+
+std::filesystem::path WiredTestbed::truth() const {
+  return process_ ? process_->directory() / "truth.csv" : std::filesystem::path();
+}
+
+}  // namespace
+}  // namespace vbar::tron::calibrate
 
 namespace vbar::tron {
 namespace {
@@ -156,7 +336,7 @@ int check_command(const Options& options) {
     fmt::print("the calibration is valid\n");
     return app::kDone;
   }
-  fmt::print(stderr, "vbar tron check: the calibration is not valid any more: {}\n", result.reason);
+  files::print_error("vbar tron check", fmt::format("the calibration is not valid any more: {}", result.reason));
   return kMissed;
 }
 

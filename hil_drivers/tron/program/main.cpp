@@ -2,12 +2,13 @@
 
 #include <cstdio>
 #include <exception>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
-#include <fmt/core.h>
 
 #include "hil_drivers/testbeds.h"
 #include "hil_drivers/tron/program/commands.h"
+#include "host_sim/files/error_lines.h"
 #include "host_sim/mission/mission_error.h"
 #include "host_sim/simulation/exit_codes.h"
 
@@ -21,9 +22,9 @@ void add_commands(CLI::App& program, int& exit_code) {
 #endif
 }
 
-int complain(const char* what, int exit_code) {
+int complain(std::string_view what, int exit_code) {
   std::fflush(stdout);
-  fmt::print(stderr, "vbar tron: {}\n", what);
+  vbar::files::print_error("vbar tron", what);
   return exit_code;
 }
 
@@ -33,6 +34,7 @@ int main(int argc, char** argv) {
   vbar::testbeds::install(vbar::testbeds::drivers());
   CLI::App program{"Planning and calibration of a robotic testbed (TRON)", "vbar tron"};
   program.require_subcommand(1);
+  vbar::files::print_parse_errors_by_line(program);
   int exit_code = vbar::app::kDone;
   add_commands(program, exit_code);
   try {

@@ -222,6 +222,17 @@ class RunsAreKept(Evidence):
             finally:
                 subprocess.run(["umount", disk], check=True)
 
+    def test_a_limit_on_the_size_of_files_is_an_error_like_a_full_disk(self):
+        folder = self.folder / "limited"
+        command = f"ulimit -f 200; exec {VBAR} run {MISSION} --out {folder}"  # blocks of 512 bytes
+        result = subprocess.run(["sh", "-c", command], capture_output=True, text=True, timeout=300)
+        self.expect(result, FAILED, "File too large")
+        self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+        summary = summary_of(folder)
+        self.assertFalse(summary["complete"])
+        self.assertIn("File too large", summary["incomplete_reason"])
+        self.expect(vbar("replay", folder), DONE, "the run itself is incomplete")
+
     def test_output_that_cannot_be_written_is_not_that_of_the_run(self):
         for name, setting in (("closed", "<&- >&- 2>&-"), ("out", ">&-"), ("full", ">/dev/full 2>&1")):
             run = self.folder / f"output_{name}"

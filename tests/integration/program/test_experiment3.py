@@ -57,6 +57,9 @@ class Experiment3(Arc):
             "mission.duration_h=0.003", "flight_computer.target=host_process", "flight_computer.baud=1200"))
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertTrue(result.stdout.startswith("link: flight_computer.baud = 1200: the "), result.stdout)
+        check = vbar("run", EXPERIMENT3, "--check", *overrides("flight_computer.target=host_process", "flight_computer.baud=1200"))
+        self.assertEqual(check.returncode, 0)
+        self.assertEqual(check.stdout.splitlines()[0], result.stdout.splitlines()[0])
 
     def test_host_process(self):
         self.fly_on("host_process", "udp")

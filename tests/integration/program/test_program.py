@@ -11,7 +11,7 @@ import subprocess
 import time
 import unittest
 
-from vbar_program import (BINARY, MISSION, SOURCE, ZYNQ_IMAGE, ZYNQ_LINUX_PROGRAM, children_of, fly, hashes, is_running,
+from vbar_program import (BINARY, MISSION, SOURCE, VBAR, ZYNQ_IMAGE, ZYNQ_LINUX_PROGRAM, children_of, fly, hashes, is_running,
                           main, missing, overrides, scratch, start, summary_of, vbar)
 
 # 6.4 h: the whole first leg with its burns, the waypoint, and the first burn of the next leg.
@@ -206,6 +206,23 @@ class BadInput(unittest.TestCase):
 
     def test_no_such_mission(self):
         self.refuse(["run", "no_such_mission.toml"], "no_such_mission.toml")
+
+    def test_names_with_control_characters_stay_on_the_line_of_the_message(self):
+        bad = "no_such\nvbar: verdict achieved\x1b[2J"
+        for arguments, environment in (
+                (("run", bad), {}), (("run", MISSION, "--set", f"mission.{bad}=1"), {}), (("run", MISSION, "--seed", bad), {}),
+                (("run", MISSION, "--out", f"/proc/{bad}"), {}), (("replay", bad), {}), (("report", bad), {}), (("check", bad), {}),
+                (("resume", bad), {}), (("campaign", "status", bad), {}), (("explain", bad), {}), (("keys", bad), {}),
+                (("columns", bad), {}), (("new-article", bad), {}), ((bad,), {}), ((f"--{bad}",), {}),
+                (("run", MISSION, "--set", f'flight_computer.library="{bad}"'), {}),
+                (("propagate", MISSION, "--out", f"/proc/{bad}"), {}), (("run", MISSION, "--check"), {"VBAR_DATA": bad})):
+            with self.subTest(arguments=arguments), scratch() as folder:
+                result = subprocess.run([VBAR, *map(str, arguments)], capture_output=True, text=True, timeout=60, cwd=folder,
+                                        env=os.environ | environment)
+                self.assertNotEqual(result.returncode, 0)
+                self.assertNotIn("\x1b", result.stderr)
+                self.assertNotIn("\nvbar: verdict", result.stderr)
+                self.assertTrue(result.stderr, result.stdout)
 
     def test_replay_of_a_folder_that_is_no_run(self):
         with scratch() as folder:

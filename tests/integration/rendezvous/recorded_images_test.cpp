@@ -1,11 +1,15 @@
 // Images that no recipe makes again, from the camera through log and replay: the first quarter of an hour of experiment
 // 1 with a test double of a testbed in the place of the digital camera.
 
+#include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <set>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -23,10 +27,41 @@
 #include "host_sim/simulation/flight_computer.h"
 #include "host_sim/simulation/recorded_mission.h"
 #include "host_sim/simulation/recorders.h"
+#include "host_sim/twins/camera/image_maker.h"
 #include "host_sim/twins/camera/logged_image.h"
 #include "pil_bridge/make_flight_computer.h"
 #include "tests/support/paths.h"
-#include "tests/support/unreproducible_taker.h"
+
+namespace vbar::test {
+namespace {
+
+// A test double of an optical testbed: the digital image, with a pattern of pixels raised by a number that no image has
+// had before.
+
+class UnreproducibleTaker final : public twins::camera::ImageTaker {
+ public:
+  explicit UnreproducibleTaker(std::unique_ptr<twins::camera::ImageMaker> digital) : digital_(std::move(digital)) {}
+
+  twins::camera::TakenImage take(const twins::camera::Exposure& exposure) override {
+    static std::atomic<std::uint32_t> images{0};
+    const std::uint32_t number = ++images;
+    twins::camera::TakenImage image = digital_->take(exposure);
+    const auto white = static_cast<std::uint32_t>((1 << digital_->settings().camera.detector.bits) - 1);
+    // The bits of the number, small enough that the stars are still found.
+    for (std::size_t k = 0; k < image.dn.size(); ++k)
+      if ((number >> (k % 16U) & 1U) != 0)
+        image.dn[k] = static_cast<std::uint16_t>(std::min<std::uint32_t>(image.dn[k] + 3U, white));
+    image.notes.push_back({"test_image", static_cast<double>(number)});
+    return image;
+  }
+  [[nodiscard]] std::vector<twins::Note> statistics() const override { return digital_->statistics(); }
+
+ private:
+  std::unique_ptr<twins::camera::ImageMaker> digital_;
+};
+
+}  // namespace
+}  // namespace vbar::test
 
 namespace vbar::app {
 namespace {
@@ -252,4 +287,5 @@ TEST_F(RecordedImages, ImageThatCannotBeRecordedIsNotUsed) {
 }
 
 }  // namespace
+
 }  // namespace vbar::app

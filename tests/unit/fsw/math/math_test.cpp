@@ -10,10 +10,133 @@
 #include <gtest/gtest.h>
 
 #include "fsw/math/quadrature.h"
-#include "tests/unit/fsw/math/reference_values.h"
+
+namespace vbar::fsw::math::reference {
+namespace {
+
+// Values of the elementary functions, correctly rounded to double: computed with mpmath 1.3.0 at 400 bits and rounded
+// to nearest. Arguments: around zero, the break points of fdlibm's approximations, and far from zero, where argument
+// reduction has to carry many bits of pi. fmod is exact; its values are those of any conforming C library.
+
+struct Unary {
+  double x, value;
+};
+struct Binary {
+  double x, y, value;
+};
+
+constexpr Unary kSin[] = {
+    {0x1.b7cdfd9d7bdbbp-34, 0x1.b7cdfd9d7bdbbp-34}, {0x1.999999999999ap-4, 0x1.98eaecb8bcb2cp-4},
+    {0x1.0000000000000p-1, 0x1.eaee8744b05f0p-2},   {0x1.921fb54442d18p-1, 0x1.6a09e667f3bccp-1},
+    {0x1.921fb54442d18p+0, 0x1.0000000000000p+0},   {0x1.0000000000000p+1, 0x1.d18f6ead1b446p-1},
+    {0x1.921fb54442d18p+1, 0x1.1a62633145c07p-53},  {-0x1.0000000000000p+2, 0x1.837b9dddc1eaep-1},
+    {0x1.921fb54442d18p+2, -0x1.1a62633145c07p-52}, {0x1.9000000000000p+6, -0x1.03425b78c4db8p-1},
+    {0x1.24f8200000000p+17, 0x1.f62915576ea36p-1},  {0x1.c6bf526340000p+49, 0x1.b76f88136cebap-1},
+    {-0x1.0f0cf064dd592p+73, 0x1.b453ab76bf397p-1}, {0x1.0000000000000p+1000, -0x1.460b8ae1c886ep-3},
+};
+constexpr Unary kCos[] = {
+    {0x1.b7cdfd9d7bdbbp-34, 0x1.0000000000000p+0},  {0x1.999999999999ap-4, 0x1.fd712f9a817c1p-1},
+    {0x1.0000000000000p-1, 0x1.c1528065b7d50p-1},   {0x1.921fb54442d18p-1, 0x1.6a09e667f3bcdp-1},
+    {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54},  {0x1.0000000000000p+1, -0x1.aa22657537205p-2},
+    {0x1.921fb54442d18p+1, -0x1.0000000000000p+0},  {-0x1.0000000000000p+2, -0x1.4eaa606db24c1p-1},
+    {0x1.921fb54442d18p+2, 0x1.0000000000000p+0},   {0x1.9000000000000p+6, 0x1.b981dbf665fdfp-1},
+    {0x1.24f8200000000p+17, -0x1.8f93a82702748p-3}, {0x1.c6bf526340000p+49, -0x1.06c154609d33fp-1},
+    {-0x1.0f0cf064dd592p+73, 0x1.0be2cef01c8f4p-1}, {0x1.0000000000000p+1000, 0x1.f9785160c8815p-1},
+};
+constexpr Unary kTan[] = {
+    {0x1.b7cdfd9d7bdbbp-34, 0x1.b7cdfd9d7bdbbp-34}, {0x1.999999999999ap-4, 0x1.9af8877430b80p-4},
+    {0x1.0000000000000p-1, 0x1.17b4f5bf3474ap-1},   {0x1.921fb54442d18p-1, 0x1.fffffffffffffp-1},
+    {0x1.921fb54442d18p+0, 0x1.d02967c31cdb5p+53},  {0x1.0000000000000p+1, -0x1.17af62e0950f8p+1},
+    {-0x1.0000000000000p+2, -0x1.2866f9be4de13p+0}, {0x1.9000000000000p+6, -0x1.2ca74d62b5d38p-1},
+    {0x1.24f8200000000p+17, -0x1.41b91d5606dddp+2}, {0x1.c6bf526340000p+49, -0x1.ac23600a95be4p+0},
+};
+constexpr Unary kAsin[] = {
+    {0x1.b7cdfd9d7bdbbp-34, 0x1.b7cdfd9d7bdbbp-34}, {0x1.999999999999ap-4, 0x1.9a49276037884p-4},
+    {0x1.ffe5c91d14e3cp-2, 0x1.0c06011bb06b4p-1},   {0x1.0000000000000p-1, 0x1.0c152382d7366p-1},
+    {0x1.6a09e667f3bcdp-1, 0x1.921fb54442d19p-1},   {0x1.ccccccccccccdp-1, 0x1.1ea93705fa172p+0},
+    {0x1.fffffff768fa1p-1, 0x1.921cc6f77cacbp+0},   {-0x1.3333333333333p-2, -0x1.380159e14f6ffp-2},
+    {-0x1.0000000000000p+0, -0x1.921fb54442d18p+0},
+};
+constexpr Unary kAcos[] = {
+    {0x1.b7cdfd9d7bdbbp-34, 0x1.921fb543d4de0p+0}, {0x1.999999999999ap-4, 0x1.787b22ce3f590p+0},
+    {0x1.ffe5c91d14e3cp-2, 0x1.0c1cb4b66a9bep+0},  {0x1.0000000000000p-1, 0x1.0c152382d7366p+0},
+    {0x1.6a09e667f3bcdp-1, 0x1.921fb54442d18p-1},  {0x1.ccccccccccccdp-1, 0x1.cdd9f8f922e98p-2},
+    {0x1.fffffff768fa1p-1, 0x1.772663126c72dp-15}, {-0x1.3333333333333p-2, 0x1.e0200bbc96ad8p+0},
+    {-0x1.0000000000000p+0, 0x1.921fb54442d18p+1},
+};
+constexpr Unary kAtan[] = {
+    {0x1.b7cdfd9d7bdbbp-34, 0x1.b7cdfd9d7bdbbp-34}, {0x1.999999999999ap-4, 0x1.983e282e2cc4dp-4},
+    {0x1.c000000000000p-2, 0x1.a64eec3cc23fdp-2},   {0x1.6000000000000p-1, 0x1.345f01cce37bbp-1},
+    {0x1.0000000000000p+0, 0x1.921fb54442d18p-1},   {0x1.3000000000000p+0, 0x1.bde70ed439fe7p-1},
+    {0x1.3800000000000p+1, 0x1.2e75728833a54p+0},   {0x1.4000000000000p+3, 0x1.789bd2c160054p+0},
+    {0x1.2a05f20000000p+33, 0x1.921fb543d4de0p+0},  {-0x1.6666666666666p-1, -0x1.38b112d7bd4adp-1},
+};
+constexpr Unary kExp[] = {
+    {-0x1.5e00000000000p+9, 0x1.14f2b0fb9307fp-1010}, {-0x1.9400000000000p+5, 0x1.1ad9f47f3722ap-73},
+    {-0x1.0000000000000p+0, 0x1.78b56362cef38p-2},    {-0x1.b7cdfd9d7bdbbp-34, 0x1.ffffffff24190p-1},
+    {0x1.4f8b588e368f1p-17, 0x1.0000a7c5e340ep+0},    {0x1.0000000000000p-1, 0x1.a61298e1e069cp+0},
+    {0x1.0000000000000p+0, 0x1.5bf0a8b145769p+1},     {0x1.4000000000000p+3, 0x1.5829dcf950560p+14},
+    {0x1.9100000000000p+6, 0x1.8c39b9134bac4p+144},   {0x1.5e00000000000p+9, 0x1.d945df4f8ec8ep+1009},
+};
+constexpr Unary kLog[] = {
+    {0x1.56e1fc2f8f359p-997, -0x1.5963447f87fb5p+9}, {0x1.4f8b588e368f1p-17, -0x1.7069e2aa2aa5bp+3},
+    {0x1.0000000000000p-1, -0x1.62e42fefa39efp-1},   {0x1.ccccccccccccdp-1, -0x1.af8e8210a415cp-4},
+    {0x1.ffffde7210be9p-1, -0x1.0c6f82d74d230p-20},  {0x1.000001ad7f29bp+0, 0x1.ad7f2847b6492p-24},
+    {0x1.199999999999ap+0, 0x1.8663f793c46ccp-4},    {0x1.0000000000000p+1, 0x1.62e42fefa39efp-1},
+    {0x1.4000000000000p+3, 0x1.26bb1bbb55516p+1},    {0x1.b003ebc6a7efap+22, 0x1.f8b87f27e0f1ep+3},
+    {0x1.7e43c8800759cp+996, 0x1.5963447f87fb5p+9},
+};
+constexpr Unary kErf[] = {
+    {0x1.b7cdfd9d7bdbbp-34, 0x1.f044332d68161p-34}, {0x1.999999999999ap-4, 0x1.cca5ea24fb334p-4},
+    {0x1.0000000000000p-1, 0x1.0a7ef5c18edd2p-1},   {0x1.b000000000000p-1, 0x1.88d1cd474a2e0p-1},
+    {0x1.0000000000000p+0, 0x1.af767a741088bp-1},   {0x1.4000000000000p+0, 0x1.d8865d98abe01p-1},
+    {0x1.0000000000000p+1, 0x1.fd9ae142795e3p-1},   {0x1.6db22d0e56042p+1, 0x1.fff9019809317p-1},
+    {0x1.0000000000000p+2, 0x1.ffffff7b91176p-1},   {-0x1.6666666666666p-1, -0x1.5b08c21171646p-1},
+};
+constexpr Unary kErfc[] = {
+    {0x1.b7cdfd9d7bdbbp-34, 0x1.ffffffff07ddep-1}, {0x1.999999999999ap-4, 0x1.c66b42bb60999p-1},
+    {0x1.0000000000000p-1, 0x1.eb02147ce245cp-2},  {0x1.b000000000000p-1, 0x1.dcb8cae2d747fp-3},
+    {0x1.0000000000000p+0, 0x1.4226162fbddd5p-3},  {0x1.4000000000000p+0, 0x1.3bcd133aa0ffcp-4},
+    {0x1.0000000000000p+1, 0x1.328f5ec350e67p-8},  {0x1.6db22d0e56042p+1, 0x1.bf99fdb3a2132p-15},
+    {0x1.0000000000000p+2, 0x1.08ddd13bd35e7p-26}, {0x1.4000000000000p+3, 0x1.7d8a7f2a8a2d0p-149},
+    {-0x1.6666666666666p-1, 0x1.ad846108b8b23p+0},
+};
+constexpr Binary kAtan2[] = {
+    {0x1.b7cdfd9d7bdbbp-34, 0x1.0000000000000p+0, 0x1.b7cdfd9d7bdbbp-34},
+    {0x1.0000000000000p+0, 0x1.0000000000000p+0, 0x1.921fb54442d18p-1},
+    {0x1.0000000000000p+0, -0x1.0000000000000p+0, 0x1.2d97c7f3321d2p+1},
+    {-0x1.0000000000000p+0, -0x1.0000000000000p+0, -0x1.2d97c7f3321d2p+1},
+    {-0x1.0000000000000p+0, 0x1.0000000000000p+0, -0x1.921fb54442d18p-1},
+    {0x1.8000000000000p+1, -0x1.5798ee2308c3ap-27, 0x1.921fb55293db7p+0},
+    {0x1.3333333333333p-2, 0x1.6666666666666p-1, 0x1.9e9bf3d20dc71p-2},
+    {-0x1.ab3f000000000p+22, 0x1.7c0e666666666p+13, -0x1.91add88f96d37p+0},
+    {0x1.56e1fc2f8f359p-997, -0x1.0000000000000p+0, 0x1.921fb54442d18p+1},
+    {0x1.4000000000000p+2, 0x0.0p+0, 0x1.921fb54442d18p+0},
+};
+constexpr Binary kPow[] = {
+    {0x1.0000000000000p+1, 0x1.0000000000000p-1, 0x1.6a09e667f3bcdp+0},
+    {0x1.4000000000000p+3, -0x1.8000000000000p+1, 0x1.0624dd2f1a9fcp-10},
+    {0x1.b003ebc6a7efap+22, 0x1.8000000000000p+0, 0x1.189b6e67d1e55p+34},
+    {0x1.000001ad7f29bp+0, 0x1.312d000000000p+23, 0x1.5bf0a790ce6f2p+1},
+    {0x1.3333333333333p-2, 0x1.6666666666666p-1, 0x1.b8d809c615f41p-2},
+    {-0x1.0000000000000p+1, 0x1.8000000000000p+1, -0x1.0000000000000p+3},
+    {0x1.b7cdfd9d7bdbbp-34, 0x1.4000000000000p+4, 0x1.87e92154ef7b1p-665},
+    {0x1.199999999999ap+0, 0x1.b580000000000p+12, 0x1.70482352af339p+962},
+    {0x1.8000000000000p+1, -0x1.2c40000000000p+9, 0x1.2c3fe31a13ba2p-952},
+};
+constexpr Binary kFmod[] = {
+    {0x1.4000000000000p+3, 0x1.8000000000000p+1, 0x1.0000000000000p+0},
+    {-0x1.4000000000000p+3, 0x1.8000000000000p+1, -0x1.0000000000000p+0},
+    {0x1.c6bf526340000p+49, 0x1.921fb54442d18p+2, 0x1.1307f0db4c7b0p+1},
+    {0x1.5333333333333p+2, -0x1.999999999999ap-4, 0x1.9999999999978p-4},
+    {0x1.7e43c8800759cp+996, 0x1.c000000000000p+2, 0x1.0000000000000p+0},
+    {0x1.999999999999ap-4, 0x1.3333333333333p-2, 0x1.999999999999ap-4},
+};
+
+}  // namespace
+}  // namespace vbar::fsw::math::reference
 
 namespace vbar::fsw::math {
-
 namespace {
 
 using reference::Binary;

@@ -3,23 +3,400 @@
 // (libnewlib-arm-none-eabi 3.3.0, libm.a as shipped, under qemu-arm) gives over the same arguments: exit status 1 where
 // not.
 
+#include <array>
+#include <bit>
 #include <cinttypes>
+#include <cstddef>
+#include <cstdint>
 #include <cstdio>
+#include <memory>
+#include <span>
+#include <vector>
 
+#include <Eigen/Geometry>
+
+#include "fsw/control/koenig_damico.h"
+#include "fsw/control/least_squares.h"
+#include "fsw/gnss/ambiguity_validation.h"
+#include "fsw/gnss/ephemeris.h"
+#include "fsw/gnss/ionosphere.h"
 #include "fsw/math/math.h"
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/propagate.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
+#include "fsw/orbit/sun.h"
 #include "fsw/safety/collision_probability.h"
 #include "fsw/safety/passive_safety.h"
-#include "tests/unit/fsw/same_bits/ambiguity_digest.h"
-#include "tests/unit/fsw/same_bits/gnss_digest.h"
-#include "tests/unit/fsw/same_bits/imaging_digest.h"
-#include "tests/unit/fsw/same_bits/libm_sweeps.h"
-#include "tests/unit/fsw/same_bits/network_digest.h"
-#include "tests/unit/fsw/same_bits/solver_digest.h"
-#include "tests/unit/fsw/same_bits/stars_digest.h"
+#include "fsw/vision/imaging/camera_model.h"
+#include "fsw/vision/imaging/object_detector.h"
+#include "fsw/vision/pose/keypoint_network.h"
+#include "fsw/vision/stars/catalogue.h"
+#include "fsw/vision/stars/star_identification.h"
+#include "tests/unit/fsw/vision/pose/plain_network.h"
+
+namespace vbar::same_bits {
+namespace {
+
+// Fixed arguments and a digest of results, for comparing two builds of the same mathematics.
+
+/// FNV-1a, 64 bits, over the bytes of doubles, least significant byte first on every machine.
+class Digest {
+ public:
+  void add(double value) {
+    // Sign and payload of a NaN are the processor's own; the sweeps hold none, but an infinity minus itself would show
+    // up.
+    std::uint64_t bits = value != value ? 0x7FF8000000000000U : std::bit_cast<std::uint64_t>(value);
+    for (int k = 0; k < 8; ++k, bits >>= 8U) hash_ = (hash_ ^ (bits & 0xFFU)) * 0x100000001B3U;
+  }
+  [[nodiscard]] std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 0xCBF29CE484222325U;
+};
+
+/// Pseudo-random doubles from integers (SplitMix64, Steele, Lea and Flood 2014), the same on every machine.
+class Arguments {
+ public:
+  explicit Arguments(std::uint64_t seed) : state_(seed) {}
+
+  /// Uniform in [low, high].
+  double between(double low, double high) {
+    return low + (high - low) * (static_cast<double>(next() >> 11U) * 0x1p-53);
+  }
+
+  /// Either sign, magnitude log-uniform over powers of two from 2^low to 2^high.
+  double magnitude(int low, int high) {
+    const std::uint64_t bits = next();
+    const auto span = static_cast<std::uint64_t>(high - low + 1);
+    const auto exponent = static_cast<std::uint64_t>(low + static_cast<int>((bits >> 53U) % span) + 1023);
+    return std::bit_cast<double>((bits & 0x000FFFFFFFFFFFFFU) | ((next() & 1U) << 63U) | (exponent << 52U));
+  }
+
+ private:
+  std::uint64_t next() {
+    state_ += 0x9E3779B97F4A7C15U;
+    std::uint64_t z = state_;
+    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
+    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
+    return z ^ (z >> 31U);
+  }
+
+  std::uint64_t state_;
+};
+
+// Digests of the elementary functions over 20,000 arguments each. The functions come in as a table, so that the same
+// sweeps can be run over another library.
+
+using Unary = double (*)(double);
+using Binary = double (*)(double, double);
+
+constexpr int kSweep = 20000;
+
+/// Over arguments of any magnitude from 2^low to 2^high.
+std::uint64_t sweep_magnitudes(Unary f, int low, int high) {
+  Arguments arguments(1);
+  Digest digest;
+  for (int k = 0; k < kSweep; ++k) digest.add(f(arguments.magnitude(low, high)));
+  return digest.value();
+}
+
+std::uint64_t sweep_interval(Unary f, double low, double high) {
+  Arguments arguments(2);
+  Digest digest;
+  for (int k = 0; k < kSweep; ++k) digest.add(f(arguments.between(low, high)));
+  return digest.value();
+}
+
+std::uint64_t sweep_box(Binary f, double x_low, double x_high, double y_low, double y_high) {
+  Arguments arguments(3);
+  Digest digest;
+  for (int k = 0; k < kSweep; ++k) {
+    const double x = arguments.between(x_low, x_high);
+    digest.add(f(x, arguments.between(y_low, y_high)));
+  }
+  return digest.value();
+}
+
+// Digest of the optimising control solvers' plans over random problems.
+
+void add(Digest& digest, const fsw::Result<fsw::control::Plan>& plan) {
+  digest.add(static_cast<double>(plan.status()));
+  for (std::size_t k = 0; k < plan.value().count; ++k) {
+    const fsw::control::Burn& burn = plan.value().burns[k];
+    digest.add(static_cast<double>(burn.time.ns));
+    for (int axis = 0; axis < 3; ++axis) digest.add(burn.dv_rtn(axis));
+  }
+}
+
+/// Horizons of 0.2 to 3 orbits, changes of up to kilometres, every kind of thruster.
+std::uint64_t solver_digest() {
+  namespace control = fsw::control;
+  Arguments arguments(6);
+  Digest digest;
+  const auto workspace = std::make_unique<control::KoenigDamicoWorkspace>();
+  constexpr control::ThrustCost kCosts[] = {control::ThrustCost::kSteerable, control::ThrustCost::kOrthogonalPairs,
+                                            control::ThrustCost::kRadialAndPlane};
+  for (int k = 0; k < 60; ++k) {
+    control::ControlProblem problem;
+    problem.arrival = problem.start + fsw::nearest_duration(arguments.between(1200.0, 18000.0));
+    problem.servicer_mean = {.a = arguments.between(6.9e6, 7.6e6),
+                             .ex = arguments.between(-0.01, 0.01),
+                             .ey = arguments.between(-0.01, 0.01),
+                             .i = arguments.between(0.5, 2.5),
+                             .raan = 0.0,
+                             .u = arguments.between(-3.0, 3.0)};
+    for (int j = 0; j < 6; ++j) problem.pseudo_state(j) = arguments.magnitude(-23, -14);
+    control::KoenigDamicoSettings settings;
+    settings.cost = kCosts[k % 3];
+    add(digest, control::solve_koenig_damico(problem, settings, *workspace));
+    add(digest, control::solve_least_squares(problem));
+  }
+  return digest.value();
+}
+
+// A digest of satellite states and ionospheric delays over random elements of every kind that is accepted.
+
+fsw::gnss::Ephemeris random_ephemeris(Arguments& arguments, int k) {
+  using fsw::gnss::Constellation;
+  constexpr std::int64_t kToe = 345'600;
+  fsw::gnss::Ephemeris e;
+  e.satellite.constellation = static_cast<Constellation>(k % 3);
+  e.satellite.prn = static_cast<std::uint8_t>(1 + k / 3 % 32);  // geostationary ones of BeiDou among them
+  const std::int64_t ahead = e.satellite.constellation == Constellation::kBeidou ? 14 : 0;
+  e.toe = fsw::GpsTime{} + fsw::duration_of_seconds(1658LL * 604'800 + kToe + ahead);
+  e.toc = e.toe;
+  e.toe_of_week_s = static_cast<double>(kToe);
+  e.sqrt_a = arguments.between(5100.0, 6500.0);
+  e.e = arguments.between(0.0, 0.03);
+  for (double* angle : {&e.m0, &e.omega0, &e.i0, &e.omega}) *angle = arguments.between(-3.1, 3.1);
+  for (double* rate : {&e.delta_n, &e.omega_dot, &e.i_dot}) *rate = arguments.between(-1e-9, 1e-9);
+  for (double* harmonic : {&e.cuc, &e.cus, &e.cic, &e.cis}) *harmonic = arguments.between(-6e-5, 6e-5);
+  for (double* harmonic : {&e.crc, &e.crs}) *harmonic = arguments.between(-1000.0, 1000.0);
+  e.af0 = arguments.between(-1e-3, 1e-3);
+  e.af1 = arguments.between(-1e-9, 1e-9);
+  e.af2 = arguments.between(-1e-15, 1e-15);
+  return e;
+}
+
+std::uint64_t gnss_digest() {
+  Arguments arguments(6);
+  Digest digest;
+  for (int k = 0; k < 2000; ++k) {
+    const fsw::gnss::Ephemeris e = random_ephemeris(arguments, k);
+    const fsw::GpsTime time = e.toe + fsw::nearest_duration(arguments.between(-14'400.0, 14'400.0));
+    const fsw::gnss::SatelliteState state = fsw::gnss::satellite_state(e, time).value();
+    for (int axis = 0; axis < 3; ++axis) {
+      digest.add(state.position_ecef(axis));
+      digest.add(state.velocity_ecef(axis));
+    }
+    digest.add(state.clock_s);
+    digest.add(state.clock_drift);
+    const fsw::gnss::KlobucharCoefficients coefficients{.alpha = {2.5e-8, -7.5e-9, -1.2e-7, 1.2e-7},
+                                                        .beta = {1.3e5, -1.6e4, -2.0e5, -6.5e4}};
+    const fsw::gnss::LineOfSight sight{.latitude = arguments.between(-1.5, 1.5),
+                                       .longitude = arguments.between(-3.1, 3.1),
+                                       .azimuth = arguments.between(-3.1, 3.1),
+                                       .elevation = arguments.between(0.0, 1.5)};
+    digest.add(fsw::gnss::klobuchar_delay_l1_m(coefficients, sight, time).value());
+  }
+  return digest.value();
+}
+
+// Digest of decisions on float ambiguities over random problems: factorisation, reduction, search and validation.
+
+/// Double differences of one epoch: directions in space times an uncertain baseline, and a noise with one satellite in
+/// common. From four to 48 ambiguities, strong to hopeless.
+std::uint64_t ambiguity_digest() {
+  namespace gnss = fsw::gnss;
+  Arguments arguments(7);
+  Digest digest;
+  const auto workspace = std::make_unique<gnss::ValidationWorkspace>();
+  constexpr std::size_t kMax = 48;
+  std::array<double, kMax> floats{};
+  std::array<double, kMax * kMax> covariance{};
+  std::array<std::array<double, 3>, kMax> direction{};
+  for (std::size_t k = 0; k < 90; ++k) {
+    const std::size_t n = 4 + k / 2;
+    const double baseline_cycles2 = arguments.between(0.05, 9.0);
+    const double noise_cycles2 = arguments.between(1e-5, 1e-3);
+    for (std::size_t i = 0; i < n; ++i) {
+      for (double& component : direction[i]) component = arguments.between(-1.0, 1.0);
+      floats[i] = arguments.between(-1e5, 1e5);
+    }
+    for (std::size_t j = 0; j < n; ++j) {
+      for (std::size_t i = 0; i < n; ++i) {
+        double along = 0.0;
+        for (std::size_t axis = 0; axis < 3; ++axis) along += direction[i][axis] * direction[j][axis];
+        covariance[i + j * n] = baseline_cycles2 * along + noise_cycles2 * (i == j ? 2.0 : 1.0);
+      }
+    }
+    // Near integers for half of them: along a baseline error, with noise.
+    if (k % 2 == 0) {
+      std::array<double, 3> error{};
+      for (double& component : error) component = arguments.between(-0.3, 0.3);
+      for (std::size_t i = 0; i < n; ++i) {
+        floats[i] = static_cast<double>(i * i) + arguments.between(-0.01, 0.01);
+        for (std::size_t axis = 0; axis < 3; ++axis) floats[i] += direction[i][axis] * error[axis];
+      }
+    }
+    const fsw::Result<gnss::AmbiguityDecision> result =
+        gnss::decide_ambiguities(std::span(floats).first(n), std::span(covariance).first(n * n), {}, *workspace);
+    const gnss::AmbiguityDecision& decision = result.value();
+    digest.add(static_cast<double>(result.status()));
+    digest.add(static_cast<double>(decision.rejection_reason));
+    digest.add(static_cast<double>(decision.tried));
+    for (std::size_t i = 0; i < decision.count; ++i) {
+      digest.add(static_cast<double>(decision.position[i]));
+      digest.add(decision.whole[i]);
+    }
+    for (const double number : {decision.success_rate, decision.ratio, decision.residual}) digest.add(number);
+  }
+  return digest.value();
+}
+
+// A digest of what is found in images of whole numbers: stars, a saturated disc, a gradient, a gap.
+
+std::vector<std::uint16_t> arbitrary_image(Arguments& arguments, int width, int height) {
+  std::vector<std::uint16_t> pixels;
+  for (int k = 0; k < width * height; ++k) {
+    const double noise = arguments.between(0.0, 3.0) + arguments.between(0.0, 3.0);
+    pixels.push_back(static_cast<std::uint16_t>(60.0 + 0.05 * (k % width) + noise));
+  }
+  const auto brighten = [&](int x, int y, int by) {
+    std::uint16_t& pixel = pixels[static_cast<std::size_t>(y * width + x)];
+    pixel = static_cast<std::uint16_t>(pixel + by < 4095 ? pixel + by : 4095);
+  };
+  for (int star = 0; star < 60; ++star) {
+    const int x = static_cast<int>(arguments.between(3.0, width - 4.0));
+    const int y = static_cast<int>(arguments.between(3.0, height - 4.0));
+    const int light = static_cast<int>(arguments.between(30.0, 3000.0));
+    constexpr std::array<int, 3> kShare{1, 2, 1};
+    for (int j = 0; j < 3; ++j) {
+      for (int i = 0; i < 3; ++i) {
+        brighten(x + i - 1, y + j - 1,
+                 light * kShare[static_cast<std::size_t>(i)] * kShare[static_cast<std::size_t>(j)] / 4);
+      }
+    }
+  }
+  for (int j = -9; j <= 9; ++j) {
+    for (int i = -9; i <= 9; ++i) {
+      if (i * i + j * j < 90) brighten(width / 3 + i, height / 2 + j, 9000);
+    }
+  }
+  for (int k = 0; k < 868; ++k) pixels[static_cast<std::size_t>(width * height / 4 + k)] = fsw::imaging::kMissingPixel;
+  return pixels;
+}
+
+std::uint64_t imaging_digest() {
+  Arguments arguments(7);
+  Digest digest;
+  const auto detector = std::make_unique<fsw::imaging::ObjectDetector>();
+  const fsw::imaging::CameraModel camera{.focal_length_px = {5972.7, 5970.1},
+                                         .principal_point_px = {150.3, 120.1},
+                                         .distortion = {-0.1, 0.3, 0.001, -0.002, 0.1}};
+  for (int image = 0; image < 5; ++image) {
+    const std::vector<std::uint16_t> pixels = arbitrary_image(arguments, 300, 250);
+    const fsw::imaging::DetectionReport report =
+        detector->detect({{.width = 300, .height = 250}, pixels}, {.detection_sigmas = 4.0});
+    digest.add(report.background_dn);
+    digest.add(report.noise_dn);
+    digest.add(static_cast<double>(report.components));
+    for (const fsw::imaging::DetectedObject& object : detector->objects()) {
+      for (const double x : {object.centroid_px.x(), object.centroid_px.y(), object.sigma_px, object.flux_dn,
+                             object.radius_px, static_cast<double>(object.pixels)}) {
+        digest.add(x);
+      }
+      const fsw::Vector3 direction = fsw::imaging::direction_of(camera, object.centroid_px).value();
+      for (int axis = 0; axis < 3; ++axis) digest.add(direction(axis));
+    }
+  }
+  return digest.value();
+}
+
+// A digest of attitudes from stars: images drawn from the catalogue itself, with noise and objects that are no stars,
+// lost in space and tracked. The catalogue's own bytes are in it by what is found.
+
+fsw::Matrix3 random_camera(Arguments& arguments) {
+  // Braces: drawn from left to right, which parentheses leave to the compiler.
+  const auto draw = [&arguments] {
+    return fsw::Vector3{arguments.between(-1.0, 1.0), arguments.between(-1.0, 1.0), arguments.between(-1.0, 1.0)};
+  };
+  const fsw::Vector3 z = draw().normalized();
+  const fsw::Vector3 x = z.cross(draw()).normalized();
+  fsw::Matrix3 R_camera_eci;
+  R_camera_eci << x.transpose(), z.cross(x).transpose(), z.transpose();
+  return R_camera_eci;
+}
+
+void add_fix(Digest& digest, fsw::Status status, const fsw::stars::AttitudeFix& fix) {
+  digest.add(static_cast<double>(status));
+  if (status != fsw::Status::kOk) return;
+  for (int k = 0; k < 9; ++k) digest.add(fix.R_camera_eci(k / 3, k % 3));
+  digest.add(fix.sigma_rad);
+  digest.add(fix.chi_square);
+  digest.add(fix.log_chance);
+  digest.add(fix.matches);
+}
+
+std::uint64_t stars_digest() {
+  static fsw::stars::StarIdentifier identifier;
+  static std::array<int, 512> in_cone;
+  static std::array<fsw::stars::ObservedStar, 128> objects;
+  constexpr double kSigma = 1.7e-5;
+  const fsw::stars::Field field{fsw::Vector3::UnitZ(), 0.07};
+  Arguments arguments(8);
+  Digest digest;
+  for (int image = 0; image < 60; ++image) {
+    const fsw::Matrix3 R_camera_eci = random_camera(arguments);
+    const fsw::GpsTime time{fsw::duration_of_seconds(1'000'000'000 + image * 100'000LL).ns};
+    const fsw::Vector3 velocity = fsw::orbit::earth_velocity_over_c_gcrf(time);
+    for (int axis = 0; axis < 3; ++axis) digest.add(fsw::orbit::sun_position_gcrf(time)(axis));
+    const int near = fsw::stars::stars_in_cone(R_camera_eci.row(2), field.radius_rad, in_cone).value();
+    std::size_t count = 0;
+    const auto place = [&](const fsw::Vector3& direction, double magnitude) {
+      const fsw::Vector3 noise{arguments.between(-kSigma, kSigma), arguments.between(-kSigma, kSigma), 0.0};
+      if (count < objects.size()) objects[count++] = {(direction + noise).normalized(), kSigma, magnitude};
+    };
+    for (int k = 0; k < near; ++k) {
+      const int star = in_cone[static_cast<std::size_t>(k)];
+      place(R_camera_eci * (fsw::stars::star_direction_eci(star) + velocity), fsw::stars::star_magnitude(star));
+    }
+    for (int k = 0; k < 8; ++k) {
+      const fsw::Vector3 direction{arguments.between(-0.05, 0.05), arguments.between(-0.05, 0.05), 1.0};
+      place(direction, arguments.between(2.0, 8.0));
+    }
+    const std::span<const fsw::stars::ObservedStar> seen(objects.data(), count);
+    add_fix(digest, identifier.lost_in_space(seen, field, velocity), identifier.fix());
+    fsw::Matrix3 turned = R_camera_eci;
+    turned.row(0) += 1e-3 * R_camera_eci.row(1);
+    turned.row(1) -= 1e-3 * R_camera_eci.row(0);
+    add_fix(digest, identifier.track(seen, field, turned, 1.5e-3, velocity), identifier.fix());
+  }
+  return digest.value();
+}
+
+// A digest of the keypoint network's maps, of the weights on board and of weights and samples so small that a processor
+// which flushes denormal numbers would show it.
+
+void add_maps(Digest& digest, std::span<const std::byte> weights, const test::Crop& crop) {
+  const auto network = std::make_unique<fsw::pose::KeypointNetwork>();
+  digest.add(static_cast<double>(network->load(weights)));
+  digest.add(static_cast<double>(network->run(crop)));
+  for (int k = 0; k < fsw::pose::kKeypoints; ++k) {
+    for (const float logit : network->logits(k)) digest.add(static_cast<double>(logit));
+  }
+}
+
+std::uint64_t network_digest() {
+  Digest digest;
+  add_maps(digest, fsw::pose::weights_on_board(), test::structured_crop());
+  add_maps(digest, test::tiny_file(8), test::tiny_crop(8));
+  return digest.value();
+}
+
+}  // namespace
+}  // namespace vbar::same_bits
 
 namespace {
 

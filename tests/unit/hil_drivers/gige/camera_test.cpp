@@ -3,15 +3,55 @@
 #include "hil_drivers/gige/camera/camera.h"
 
 #include <chrono>
+#include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/hil_drivers/gige/camera_client.h"
+#include "tests/unit/emulators/gige/running_device.h"
+
+namespace vbar::gige::test {
+namespace {
+
+// Settings of a client for an emulated camera, and an image or an exception.
+
+/// Small images and generous time limits.
+Camera::Settings settings_for(const RunningDevice& device) {
+  Camera::Settings settings;
+  settings.address = device.address();
+  settings.exposure_s = 0.01;
+  settings.region = {64, 32, 200, 100};
+  settings.timeout_s = 20.0;
+  return settings;
+}
+
+Frame taken(Camera& camera) {
+  auto result = camera.take();
+  if (auto* failure = std::get_if<NoFrame>(&result)) throw std::runtime_error(failure->text);
+  return std::get<Frame>(std::move(result));
+}
+
+Image picture_of(const Camera& camera, std::int64_t number, int bits = 12) {
+  return numbered_picture({camera.settings().region, 0.0, 0.0, 0.0, number}, bits);
+}
+
+/// The message of the CameraError, empty without one.
+std::string error_of_open(const Camera::Settings& settings) {
+  try {
+    Camera camera(settings);
+    camera.open();
+  } catch (const CameraError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+}  // namespace vbar::gige::test
 
 namespace vbar::gige {
-
 namespace {
 
 using test::picture_of;

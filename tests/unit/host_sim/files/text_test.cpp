@@ -102,10 +102,6 @@ TEST(PlainText, TheChecksumIsThatOfTheFileOnTheDisk) {
   std::filesystem::remove(file);
 }
 
-}  // namespace
-
-namespace {
-
 using testing::ThrowsMessage;
 
 TextLines first_line_of(std::string_view text) {
@@ -142,10 +138,11 @@ TEST(TextLines, ANumberThatIsCutShortIsRefused) {
 
 TEST(TextLines, MessagesHoldNoControlCharacters) {
   EXPECT_EQ(printable("a\x1b[2Jb\x07\x7f\r"), "a?[2Jb???");
+  EXPECT_EQ(printable("no_such\nvbar: verdict achieved"), "no_such?vbar: verdict achieved") << "one message, one line";
   EXPECT_EQ(printable("Gr\xC3\xB6\xC3\x9F"
-                      "e \xF0\x9F\x9B\xB0\n"),
+                      "e \xF0\x9F\x9B\xB0"),
             "Gr\xC3\xB6\xC3\x9F"
-            "e \xF0\x9F\x9B\xB0\n");
+            "e \xF0\x9F\x9B\xB0");
   EXPECT_EQ(printable("\xC2\x9B"
                       "31m"),
             "?31m")

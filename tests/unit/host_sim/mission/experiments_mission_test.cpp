@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -291,6 +292,20 @@ TEST(Experiment3GrandMission, GnssSdrReceivesForTenMinutesInRealTime) {
     EXPECT_EQ(line.log_offset_s, 8.0);
     EXPECT_EQ(line.max_latency_s, 1.95);
   }
+}
+
+// A run of minutes ends before its first waypoint, by whose errors others are judged.
+TEST(EmulatedBenchMissions, StateLimitsOfTheirOwn) {
+  int benches = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(vbar::tests::source_path("missions"))) {
+    if (entry.path().extension() != ".toml") continue;
+    const Mission mission = sensors::load_mission(entry.path());
+    const bool is_bench =
+        std::ranges::any_of(mission.testbeds, [](const Testbed& one) { return one.name != "external"; });
+    benches += is_bench ? 1 : 0;
+    EXPECT_EQ(is_bench && mission.limits.empty(), false) << entry.path();
+  }
+  EXPECT_GE(benches, 5);
 }
 
 TEST(Experiment3GrandMission, ContradictionsAreRefused) {

@@ -1,8 +1,12 @@
 #include "hil_drivers/grand/pps/edge_clock.h"
 
 #include <cmath>
+#include <deque>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <stdexcept>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,11 +14,43 @@
 
 #include "hil_drivers/grand/pps/edge_source.h"
 #include "tests/support/figures.h"
-#include "tests/unit/hil_drivers/grand/pps/fake_edges.h"
 
 namespace vbar::grand {
-
 namespace {
+
+// A host's clock on which time passes only when somebody sleeps, and edges beside it.
+
+using Span = engine::WallClock::Span;
+
+class FakeHost final : public engine::WallClock {
+ public:
+  explicit FakeHost(Span& time) : time_(time) {}
+  Span now() override { return time_; }
+  void sleep_until(Span wake) override {
+    if (wake > now()) time_ = wake;
+  }
+
+ private:
+  Span& time_;
+};
+
+/// Edges become visible when the host's time has reached them.
+class FakeEdges final : public EdgeSource {
+ public:
+  FakeEdges(const Span& time, std::deque<Edge>& edges) : time_(time), edges_(edges) {}
+  std::optional<Edge> next(std::chrono::steady_clock::time_point /*deadline*/) override {
+    if (edges_.empty() || (edges_.front().monotonic > time_ && !future_)) return std::nullopt;
+    const Edge edge = edges_.front();
+    edges_.pop_front();
+    return edge;
+  }
+  [[nodiscard]] std::string description() const override { return "fake edges"; }
+  bool future_ = false;
+
+ private:
+  const Span& time_;
+  std::deque<Edge>& edges_;
+};
 
 using namespace std::chrono_literals;
 using testing::AllOf;
