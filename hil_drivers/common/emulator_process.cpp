@@ -136,7 +136,7 @@ void EmulatorProcess::stop() noexcept {
   if (process_) process_->terminate(kEndPatience);
   if (directory_.empty()) return;
   try {
-    faults_ = count_faults(directory_ / kFaultsFile);
+    faults_ = count_faults(directory_ / wire::kFaultsFile);
   } catch (...) {
     // Without memory for a count the run still ends in order.
   }
