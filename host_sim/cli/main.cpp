@@ -103,8 +103,8 @@ int after_output(const CLI::App& program, int result) {
   const std::vector<CLI::App*> commands = program.get_subcommands();
   const auto leaves_folder = [](const CLI::App* command) {
     const std::string name = command->get_name();
-    return name == "run" || name == "resume" || name == "propagate" ||
-           name == "verify" || (name == "campaign" && command->got_subcommand("run"));
+    return name == "run" || name == "resume" || name == "propagate" || name == "verify" ||
+           (name == "campaign" && command->got_subcommand("run"));
   };
   if (!std::ranges::any_of(commands, leaves_folder))
     return complain("standard output cannot be written" + reason, result == kDone ? kFailed : result);
