@@ -24,7 +24,8 @@ Bench::Bench(boost::asio::io_context& context, const Scenario& scenario, const s
       edges_(std::make_unique<EdgeBroadcaster>((directory_.path() / kPpsSocket).string())),
       engine_(std::make_unique<GeneratorEngine>(context, scenario, data_directory, directory_.path(), make_receiver)),
       control_(make_control_servers(context, *engine_, scenario.control)),
-      faults_(std::make_unique<FaultInjector>(*engine_, *control_, *edges_, directory_.path() / wire::kFaultsFile)),
+      faults_(
+          std::make_unique<FaultInjector>(*engine_, *control_, *edges_, directory_.path() / vbar::wire::kFaultsFile)),
       fault_line_(std::make_unique<emulators::ControlLine>(
           context, directory_.path() / kFaultSocket,
           [this, vehicles = scenario.vehicle_names()](const std::string& line, const emulators::Answer& answer) {
