@@ -358,10 +358,6 @@ TEST(TronDistance, OfABoxIsTheLeastOfSamples) {
 
 namespace {
 
-TestbedDesign bench() {
-  return read_testbed_design(tests::source_path("data/benches/tron.toml"));
-}
-
 Posture home() {
   const TestbedDesign file = bench();
   return {Joints::Map(file.camera_robot.home_rad.data()), Joints::Map(file.target_robot.home_rad.data()),
