@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "unit/host_sim/verification/verification_record.h"
+#include "tests/unit/host_sim/verification/verification_record.h"
 
 namespace vbar::verification {
 namespace {
