@@ -94,7 +94,7 @@ void add_verify_command(CLI::App& program, int& exit_code, const campaign::Comma
       ->add_option("--compare", options->compare,
                    "an earlier verification.json and a later one, by default that of --to: name what is worse")
       ->expected(1, 2);
-  command->callback([=, &exit_code, &command_line] {
+  command->callback([=, &exit_code] {
     options->request.command_line = command_line;
     exit_code = execute(*options, budget->count() > 0);
   });

@@ -186,9 +186,13 @@ Json head_of(const Row& row, std::size_t flown) {
           {"cases_per_seed", row.cases_per_seed}};
 }
 
+/// "achieved", or "achieved with faults"
+bool is_achieved(const campaign_report::Case& one) {
+  return one.is_complete() && one.verdict.starts_with("achieved");
+}
+
 Json share_of(const Campaign& campaign) {
-  const auto achieved =
-      std::ranges::count_if(campaign.cases, [](const auto& one) { return one.verdict == "achieved"; });
+  const auto achieved = std::ranges::count_if(campaign.cases, [](const auto& one) { return is_achieved(one); });
   const campaign_report::PassRate rate =
       campaign_report::pass_rate(static_cast<std::size_t>(achieved), campaign.cases.size(), kConfidence);
   return {{"count", achieved}, {"of", campaign.cases.size()}, {"confidence", kConfidence}, {"lower", rate.lower}};
@@ -197,7 +201,7 @@ Json share_of(const Campaign& campaign) {
 Json failures_of(const Campaign& campaign, const campaign::Standing& standing) {
   Json all = Json::array();
   for (const campaign_report::Case& one : campaign.cases)
-    if (!one.has_passed() || (one.verdict != "achieved" && one.verdict != "not judged"))
+    if (!one.has_passed() || (!is_achieved(one) && one.verdict != "not judged"))
       all.push_back({{"command", command_of(standing.plan, standing.cases[one.number])},
                      {"state", campaign_report::name_of(one.state)},
                      {"verdict", one.verdict},

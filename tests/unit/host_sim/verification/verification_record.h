@@ -1,6 +1,7 @@
 #pragma once
 // verification.json of rows that were never flown: made of values.
 
+#include <cmath>
 #include <string>
 #include <vector>
 
