@@ -32,6 +32,10 @@ constexpr double kMaxNonlinearity_m = 0.3e-3;
 constexpr double kPhaseGate = 40.0;
 constexpr double kCodeGate = 56.0;
 constexpr double kMaxRest = 4.0;
+// Codes of a signal that was acquired less than this ago are no evidence against an orbit: receivers smooth them by the
+// carrier, for some 100 s, and the delay of the ionosphere that changes meanwhile differs between two receivers of
+// which one has just begun, with the pattern of a displacement.
+constexpr double kSettled_s = 300.0;
 // Displacements below this are those of attitudes, antennas and wander.
 constexpr double kMinDisplacement_m = 5e-3;
 // An orbit is verified by this number of channels that were tracked for this number of epochs: their ambiguities are
@@ -159,6 +163,7 @@ Displacement CarrierFilter::displacement_by(Observable observable, const Differe
     const std::optional<std::size_t>& place = edits_[n].channel;
     if (observable == Observable::kPhase && (!place || channels_[*place].epochs == 0)) continue;
     const bool is_code = observable == Observable::kCode;
+    if (is_code && (observation.servicer_lock_s < kSettled_s || observation.target_lock_s < kSettled_s)) continue;
     const double innovation = is_code ? rows_.code_residual(n, observation, estimate)
                                       : rows_.phase_residual(n, *place, observation, estimate);
     const double sigma = is_code ? observation.code_sigma_m : observation.phase_sigma_m;
