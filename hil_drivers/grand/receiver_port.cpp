@@ -263,7 +263,8 @@ void ReceiverPort::take_available() {
   constexpr std::string_view kEmulated = "EMULATED";
   const std::size_t before = inbox_.size();
   const auto keep = [&] {
-    if (inbox_.size() > before) is_emulated_ = is_emulated_ || !std::ranges::search(inbox_, kEmulated).empty();
+    const auto named = std::search(inbox_.begin(), inbox_.end(), kEmulated.begin(), kEmulated.end());
+    is_emulated_ = is_emulated_ || named != inbox_.end();
     if (keep_ && inbox_.size() > before) keep_(std::span(inbox_).subspan(before));
   };
   try {
