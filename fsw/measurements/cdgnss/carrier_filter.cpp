@@ -1,5 +1,7 @@
 #include "fsw/measurements/cdgnss/carrier_filter.h"
 
+#include <algorithm>
+
 #include "fsw/math/math.h"
 #include "fsw/orbit/roe.h"
 
@@ -32,10 +34,11 @@ constexpr double kMaxNonlinearity_m = 0.3e-3;
 constexpr double kPhaseGate = 40.0;
 constexpr double kCodeGate = 56.0;
 constexpr double kMaxRest = 4.0;
-// Codes of a signal that was acquired less than this ago are no evidence against an orbit: receivers smooth them by the
-// carrier, for some 100 s, and the delay of the ionosphere that changes meanwhile differs between two receivers of
-// which one has just begun, with the pattern of a displacement.
-constexpr double kSettled_s = 300.0;
+// Receivers smooth codes by the carrier for some 100 s, and the delay of the ionosphere that changes meanwhile differs
+// between two receivers of which one has begun later: with the pattern of a displacement.
+constexpr double kSmoothed_s = 300.0;
+constexpr double kSmoothedAlike_s = 30.0;
+constexpr double kSmoothingError_m = 1.0;  // of such a displacement, at most
 // Displacements below this are those of attitudes, antennas and wander.
 constexpr double kMinDisplacement_m = 5e-3;
 // An orbit is verified by this number of channels that were tracked for this number of epochs: their ambiguities are
@@ -76,6 +79,13 @@ struct Residuals {
   }
   [[nodiscard]] const Residual& median() const { return sorted[count / 2]; }
 };
+
+/// Returns whether the codes of both receivers have been smoothed for the same time, or for long.
+bool are_smoothed_alike(const DifferentialObservation& observation) {
+  const double servicer_s = std::min(observation.servicer_lock_s, kSmoothed_s);
+  const double target_s = std::min(observation.target_lock_s, kSmoothed_s);
+  return std::max(servicer_s, target_s) - std::min(servicer_s, target_s) <= kSmoothedAlike_s;
+}
 
 }  // namespace
 
@@ -163,7 +173,6 @@ Displacement CarrierFilter::displacement_by(Observable observable, const Differe
     const std::optional<std::size_t>& place = edits_[n].channel;
     if (observable == Observable::kPhase && (!place || channels_[*place].epochs == 0)) continue;
     const bool is_code = observable == Observable::kCode;
-    if (is_code && (observation.servicer_lock_s < kSettled_s || observation.target_lock_s < kSettled_s)) continue;
     const double innovation = is_code ? rows_.code_residual(n, observation, estimate)
                                       : rows_.phase_residual(n, *place, observation, estimate);
     const double sigma = is_code ? observation.code_sigma_m : observation.phase_sigma_m;
@@ -202,7 +211,11 @@ void CarrierFilter::test_orbit(Observable observable, const DifferentialEpoch& e
   const Displacement displacement = displacement_by(observable, epoch, filter.estimate());
   if (!displacement.is_tested) return;
   const double size_m = math::sqrt(displacement.metres.squaredNorm());
-  if (!displacement.is_detected || size_m < kMinDisplacement_m) {
+  double least_m = kMinDisplacement_m;
+  for (std::size_t n = 0; n < epoch.count && observable == Observable::kCode; ++n) {
+    if (!are_smoothed_alike(epoch.observations[n])) least_m = kSmoothingError_m;
+  }
+  if (!displacement.is_detected || size_m < least_m) {
     const bool agrees = observable == Observable::kPhase && displacement.ratio <= kPhaseGate;
     if (agrees && has_proven) verified_ = epoch.time;
     return;
