@@ -67,7 +67,9 @@ class Verdict(unittest.TestCase):
                          r"^at (39\.99|40\.00)\d h, no valid estimate at waypoint 9")
 
     def test_retreated(self):
-        self.assertRegex(self.judge("retreated", NOT_ACHIEVED, "mission.duration_h=0.1", "safety.contact_distance_m=2", mission=EXPERIMENT3),
+        """An uncommanded burn of 10 mm/s, 10 m from the target."""
+        fault = 'fault=[{kind="thrust_uncommanded", at_h=39.05, for_s=10.0, value_mps2=1e-3, direction_rtn=[0.0, 1.0, 0.0]}]'
+        self.assertRegex(self.judge("retreated", NOT_ACHIEVED, "mission.duration_h=0.3", "safety.contact_distance_m=2", fault, mission=EXPERIMENT3),
                          r"^at 39\.\d+ h")
 
     def test_unsafe(self):
