@@ -1,5 +1,7 @@
 #include "fsw/filter/relative_navigation_filter.h"
 
+#include <algorithm>
+
 #include "fsw/orbit/rtn.h"
 #include "fsw/orbit/sun.h"
 
@@ -231,12 +233,10 @@ void RelativeNavigationFilter::inflate_relative(double velocity_sigma, double al
 }
 
 void RelativeNavigationFilter::inflate_by_burn(GpsTime since, double velocity_sigma) {
-  constexpr double kLongest_s = 6000.0;
+  constexpr double kShortest_s = 1e-3, kLongest_s = 6000.0;
   if (!has_relative() || !(velocity_sigma > 0.0)) return;
-  const double elapsed_s = seconds(epoch_ - since);
-  const double dt = elapsed_s < kLongest_s ? elapsed_s : kLongest_s;
-  constexpr double kShortest_s = 1e-3;
-  relative_orbit_.inflate_by_burn(estimate_, servicer(), velocity_sigma, dt > kShortest_s ? dt : kShortest_s);
+  const double dt = std::clamp(seconds(epoch_ - since), kShortest_s, kLongest_s);
+  relative_orbit_.inflate_by_burn(estimate_, servicer(), velocity_sigma, dt);
   finish_update();
 }
 

@@ -6,6 +6,7 @@
 #include <ctime>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 
 #include <fmt/chrono.h>
@@ -41,11 +42,14 @@ Json number_or_null(double value) {
   return std::isfinite(value) ? Json(std::stod(fmt::format("{:.{}g}", value, kDigits))) : Json(nullptr);
 }
 
-/// Cases of a campaign that was cut short by a budget: those that nobody asked for are left out.
-Campaign without_cases_not_begun(Campaign campaign) {
+/// Leaves out the cases that are still to be flown: beyond the budget, or interrupted.
+Campaign with_flown_cases(Campaign campaign) {
+  using campaign_report::State;
   std::vector<std::size_t> kept;
-  for (std::size_t k = 0; k < campaign.cases.size(); ++k)
-    if (campaign.cases[k].state != campaign_report::State::kNotBegun) kept.push_back(k);
+  for (std::size_t k = 0; k < campaign.cases.size(); ++k) {
+    const State state = campaign.cases[k].state;
+    if (state != State::kNotBegun && state != State::kFlying && state != State::kKilled) kept.push_back(k);
+  }
   const auto select = [&kept](auto& all) {
     std::remove_reference_t<decltype(all)> some;
     for (const std::size_t k : kept) some.push_back(all[k]);
@@ -218,7 +222,8 @@ std::string date_now() {
 std::size_t seeds_flown(const Row& row, const fs::path& folder) {
   if (!is_campaign(folder)) return 0;
   const campaign::Standing standing = campaign::read_standing(campaign::Folder(folder));
-  if (standing.plan.program_sha256 != files::sha256_of_file(files::own_program_bytes()))
+  static const std::optional<std::string> own_program_sha256 = files::sha256_of_file(files::own_program_bytes());
+  if (standing.plan.program_sha256 != own_program_sha256)
     throw app::Refused(folder.string() + ": was flown by another program; name another folder with --to");
   std::map<std::uint64_t, std::size_t> of_seed;
   for (const auto& [number, result] : standing.results.of_case) ++of_seed[standing.cases[number].seed];
@@ -233,7 +238,7 @@ Json record_of(const Row& row, const fs::path& folder) {
   const campaign::Folder campaign_folder(folder);
   const campaign::Standing standing = campaign::read_standing(campaign_folder);
   campaign::write_results(campaign_folder, standing);
-  const Campaign campaign = without_cases_not_begun(campaign_report::read_campaign(folder));
+  const Campaign campaign = with_flown_cases(campaign_report::read_campaign(folder));
   json["cases_flown"] = campaign.cases.size();
   if (campaign.cases.empty()) return json;
   double cpu_s = 0.0;

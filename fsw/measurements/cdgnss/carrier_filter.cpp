@@ -145,8 +145,11 @@ CarrierUpdate CarrierFilter::process_epoch(const DifferentialEpoch& epoch, const
   const bool uses_phases = rows_.nonlinearity_m() < kMaxNonlinearity_m || channels_.is_any_tracked();
   if (uses_phases) follow_channels(epoch, estimate, update);
   // Before the codes: against a wrong orbit they would determine a wrong clock.
-  test_orbit(Observable::kPhase, epoch, servicer, target, filter, update);
-  test_orbit(Observable::kCode, epoch, servicer, target, filter, update);
+  for (const Observable observable : {Observable::kPhase, Observable::kCode}) {
+    if (!test_orbit(observable, epoch, filter, update)) continue;
+    // The model of the observations about the same mean, with the new covariance.
+    if (rows_.form(epoch, servicer, target, filter) != Status::kOk) return update;
+  }
   find_outlying_codes(epoch, estimate);
   use_codes(epoch, estimate, update);
   if (uses_phases) {
@@ -201,29 +204,27 @@ int CarrierFilter::proven_in(const DifferentialEpoch& epoch) const {
 }
 
 /// Decides, before an epoch updates the estimate, whether the estimate is wrong: then it is opened by what can have
-/// made it so, and the same epoch corrects it. Otherwise each measurement is judged by itself.
-void CarrierFilter::test_orbit(Observable observable, const DifferentialEpoch& epoch, const AntennaPlatform& servicer,
-                               const AntennaPlatform& target, filter::RelativeNavigationFilter& filter,
-                               CarrierUpdate& update) {
+/// made it so, which the same epoch corrects, and true is returned. Otherwise each measurement is judged by itself.
+bool CarrierFilter::test_orbit(Observable observable, const DifferentialEpoch& epoch,
+                               filter::RelativeNavigationFilter& filter, CarrierUpdate& update) {
   // Phases of known ambiguities are a thousand times as accurate.
   const bool has_proven = proven_in(epoch) >= kMinProven;
-  if (observable == Observable::kCode && has_proven) return;
+  if (observable == Observable::kCode && has_proven) return false;
   const Displacement displacement = displacement_by(observable, epoch, filter.estimate());
-  if (!displacement.is_tested) return;
+  if (!displacement.is_tested) return false;
   const double size_m = math::sqrt(displacement.metres.squaredNorm());
-  double least_m = kMinDisplacement_m;
-  for (std::size_t n = 0; n < epoch.count && observable == Observable::kCode; ++n) {
-    if (!are_smoothed_alike(epoch.observations[n])) least_m = kSmoothingError_m;
-  }
+  const auto end = epoch.observations.begin() + epoch.count;
+  const bool may_be_smoothing =
+      observable == Observable::kCode && !std::all_of(epoch.observations.begin(), end, are_smoothed_alike);
+  const double least_m = may_be_smoothing ? kSmoothingError_m : kMinDisplacement_m;
   if (!displacement.is_detected || size_m < least_m) {
     const bool agrees = observable == Observable::kPhase && displacement.ratio <= kPhaseGate;
     if (agrees && has_proven) verified_ = epoch.time;
-    return;
+    return false;
   }
-  if (!open_orbit(displacement, observable, epoch.time, filter)) return;
+  if (!open_orbit(displacement, observable, epoch.time, filter)) return false;
   update.displacement_ratio = displacement.ratio;
-  // The model of the observations about the same mean, with the new covariance.
-  if (rows_.form(epoch, servicer, target, filter) != Status::kOk) return;
+  return true;
 }
 
 /// The estimate was right when it was verified last: a burn since then has displaced the target. Ambiguities that were
@@ -240,9 +241,8 @@ bool CarrierFilter::open_orbit(const Displacement& displacement, Observable obse
     }
   }
   constexpr double kShortest_s = 1.0;
-  const double elapsed_s = seconds(now - grown_since);
-  const double burn =
-      math::sqrt(displacement.metres.squaredNorm()) / (elapsed_s > kShortest_s ? elapsed_s : kShortest_s);
+  const double elapsed_s = std::max(seconds(now - grown_since), kShortest_s);
+  const double burn = math::sqrt(displacement.metres.squaredNorm()) / elapsed_s;
   if (burn > kLargestBurn) return false;
   for (std::size_t place = 0; place < kPhaseChannels; ++place) {
     if (is_of_displaced_orbit(place, since)) lose(place, filter.estimate());

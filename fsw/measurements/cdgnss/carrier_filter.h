@@ -36,8 +36,8 @@ struct CarrierUpdate {
   std::int32_t phases_rejected = 0;
   std::int32_t slips = 0;
   std::int32_t contradictions = 0;  ///< held channels released although their receivers reported no loss of lock
-  double displacement_ratio =
-      0.0;                ///< of the displacement to which the estimate was opened; 0: it was not contradicted
+  /// Likelihood ratio of the displacement to which the estimate was opened; 0: it was not contradicted.
+  double displacement_ratio = 0.0;
   double code_nis = 0.0;  ///< sums over the observations used; each is expected to be near their number
   double phase_nis = 0.0;
 };
@@ -94,8 +94,8 @@ class CarrierFilter {
   void renew_epoch_states(const AntennaPlatform& servicer, const AntennaPlatform& target, filter::Estimate& estimate);
   void follow_ionosphere(filter::RelativeNavigationFilter& filter) const;
   void find_outlying_codes(const gnss::DifferentialEpoch& epoch, const filter::Estimate& estimate);
-  void test_orbit(Observable observable, const gnss::DifferentialEpoch& epoch, const AntennaPlatform& servicer,
-                  const AntennaPlatform& target, filter::RelativeNavigationFilter& filter, CarrierUpdate& update);
+  bool test_orbit(Observable observable, const gnss::DifferentialEpoch& epoch, filter::RelativeNavigationFilter& filter,
+                  CarrierUpdate& update);
   [[nodiscard]] Displacement displacement_by(Observable observable, const gnss::DifferentialEpoch& epoch,
                                              const filter::Estimate& estimate);
   /// Whether the ambiguity of a channel was determined after `since`.

@@ -1,5 +1,7 @@
 #include "fsw/measurements/keypoints/keypoint_aiding.h"
 
+#include <algorithm>
+
 #include "fsw/math/cholesky.h"
 #include "fsw/math/math.h"
 
@@ -360,10 +362,8 @@ void KeypointAiding::count_missing(const filter::RelativeNavigationFilter& filte
 
 /// The estimate was right when an image agreed last: a burn since then explains the miss.
 void KeypointAiding::open_orbit(GpsTime time, double miss_m, filter::RelativeNavigationFilter& filter) {
-  const double since_s = seconds(time - last_accepted_);
-  const double within_s = since_s < kLongestSince_s ? since_s : kLongestSince_s;
-  filter.inflate_by_burn(last_accepted_,
-                         kBurnMargin * miss_m / (within_s > kShortestSince_s ? within_s : kShortestSince_s));
+  const double since_s = std::clamp(seconds(time - last_accepted_), kShortestSince_s, kLongestSince_s);
+  filter.inflate_by_burn(last_accepted_, kBurnMargin * miss_m / since_s);
   ++counters_.inflations;
 }
 

@@ -5,6 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <gtest/gtest.h>
 
 #include "fsw/orbit/rtn.h"
 #include "tests/unit/fsw/measurements/angles_only_scene.h"
