@@ -7,6 +7,8 @@
 A block after a line "File `NAME`:" becomes that file. In a block `console` a command follows "$ ", its output follows it; "…" stands for
 anything within a line, and alone on a line for any number of lines.
 """
+import difflib
+import itertools
 import os
 import pathlib
 import re
@@ -100,7 +102,7 @@ class Figures(unittest.TestCase):
 
 
 class Pages(unittest.TestCase):
-    """The means of this file: a page that is wrong is not accepted."""
+    """The means of this file: a page that is wrong is not accepted, and a renewed one keeps what may differ."""
 
     def test_an_output_that_differs_is_noticed(self):
         self.assertTrue(matches("a … c\n", "a b c\n"))
@@ -108,6 +110,8 @@ class Pages(unittest.TestCase):
         self.assertTrue(matches("a\n…\nz\n", "a\nb\nc\nz\n"))
         self.assertFalse(matches("a\n…\nz\n", "a\nb\nc\n"))
         self.assertFalse(matches("", "a\n"))
+        self.assertEqual(renewed("…\nx 1\ny … s\n…\n", "a\nb\nx 2\ny 4 s\nc\n"), "…\nx 2\ny … s\n…\n")
+        self.assertEqual(renewed("x 1\n", "x 2\nz\n"), "x 2\nz\n")
         self.assertFalse(matches("a\n", ""))
 
     def test_files_commands_and_status(self):
@@ -115,6 +119,26 @@ class Pages(unittest.TestCase):
         with scratch() as folder:
             self.assertEqual([(status, expected, output) for _, status, expected, output in follow(page, folder)],
                              [(0, "one\n", "one\n"), (3, "", "")])
+
+
+def renewed(expected, output):
+    """The output in the form of the page: "…" remains where it stood; the lines between two of them are those of the output most like them."""
+    lines = output.splitlines(True)
+    result, begin = [], 0
+    for any_lines, part in itertools.groupby(expected.splitlines(True), lambda line: line.strip() == ANY):
+        part = list(part)
+        if any_lines:
+            result += part[:1]
+            continue
+        if ANY + "\n" in expected:
+            windows = range(begin, max(begin, len(lines) - len(part)) + 1)
+            begin = max(windows, key=lambda at: difflib.SequenceMatcher(None, "".join(part), "".join(lines[at:at + len(part)])).ratio())
+            found = lines[begin:begin + len(part)]
+        else:
+            found = lines
+        begin += len(found)
+        result += [next((line for line in part if ANY in line and matches(line, new)), new) for new in found]
+    return "".join(result)
 
 
 def update(page):
@@ -129,7 +153,7 @@ def update(page):
                 if text.count(before) == 0:
                     raise SystemExit(f"not found in the page: {before}")
                 at = text.rindex(before)
-                text = text[:at] + f"$ {command}{output}" + text[at + len(before):]
+                text = text[:at] + f"$ {command}{renewed(expected, output)}" + text[at + len(before):]
     path.write_text(text)
 
 
