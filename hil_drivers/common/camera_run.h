@@ -78,6 +78,7 @@ class CameraRun : public TestbedRun, public std::enable_shared_from_this<CameraR
 
   /// Closes the devices and ends the emulator. For the destructor of the driver.
   void close() noexcept {
+    if (process_) process_->end_watch();
     close_devices();
     if (process_) process_->stop();
   }
@@ -109,6 +110,7 @@ class CameraRun : public TestbedRun, public std::enable_shared_from_this<CameraR
   void start() {
     try {
       open();
+      if (process_) process_->watch([this] { stop(); });
     } catch (const std::runtime_error& error) {
       const std::runtime_error cause = cause_of(error, {});
       close();
@@ -122,6 +124,8 @@ class CameraRun : public TestbedRun, public std::enable_shared_from_this<CameraR
     row.image = exposure.number;
     try {
       twins::camera::TakenImage image = expose(exposure, row);
+      if (const auto end = process_ && !image.failure.empty() ? process_->end_report() : std::nullopt)
+        throw std::runtime_error(*end);
       const std::scoped_lock lock(mutex_);
       rows_.push_back(std::move(row));
       return image;

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <sys/wait.h>
 
 #include "host_sim/files/own_program.h"
 #include "host_sim/files/text_lines.h"
@@ -74,6 +75,16 @@ std::map<std::string, int> count_faults(const std::filesystem::path& file) {
   return counts;
 }
 
+std::map<std::string, double> read_counters(const std::filesystem::path& file) {
+  std::map<std::string, double> counters;
+  std::ifstream stream(file);
+  const nlohmann::json json = nlohmann::json::parse(stream, nullptr, false);
+  if (!json.is_object()) return counters;
+  for (const auto& [name, value] : json.items())
+    if (value.is_number()) counters.emplace(name, value.get<double>());
+  return counters;
+}
+
 std::vector<std::string> emulator_arguments(const std::string& command_line, const fs::path& directory,
                                             std::uint64_t seed, const fs::path& data_directory) {
   const std::array<Replacement, 3> replacements{
@@ -132,11 +143,26 @@ std::string EmulatorProcess::last_words() const {
   return tail.empty() ? "" : "; its last line: \"" + tail + "\"";
 }
 
+// The process remains to be reaped by its owner, whose report has its status and last words.
+void EmulatorProcess::watch(std::function<void()> on_end) {
+  watch_ = std::jthread([pid = process_->pid(), on_end = std::move(on_end)](const std::stop_token& stopped) {
+    constexpr std::chrono::milliseconds kBetweenLooks{200};
+    while (!stopped.stop_requested()) {
+      siginfo_t info{};
+      const bool is_reaped = ::waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOHANG | WNOWAIT) != 0;
+      if (is_reaped || info.si_pid == pid) return stopped.stop_requested() ? void() : on_end();
+      std::this_thread::sleep_for(kBetweenLooks);
+    }
+  });
+}
+
 void EmulatorProcess::stop() noexcept {
+  end_watch();
   if (process_) process_->terminate(kEndPatience);
   if (directory_.empty()) return;
   try {
     faults_ = count_faults(directory_ / wire::kFaultsFile);
+    counters_ = read_counters(directory_ / wire::kCountersFile);
   } catch (...) {
     // Without memory for a count the run still ends in order.
   }

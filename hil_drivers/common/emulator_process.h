@@ -4,11 +4,13 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -34,6 +36,10 @@ using Replacement = std::pair<std::string_view, std::string>;
 /// without the file.
 [[nodiscard]] std::map<std::string, int> count_faults(const std::filesystem::path& file);
 
+/// Returns the numbers of an emulator's counters by name; anything else in the file is left out. Empty without the
+/// file.
+[[nodiscard]] std::map<std::string, double> read_counters(const std::filesystem::path& file);
+
 /// Returns the words of a command line, separated by spaces; {directory}, {seed} and {data} are replaced in each.
 [[nodiscard]] std::vector<std::string> emulator_arguments(const std::string& command_line,
                                                           const std::filesystem::path& directory, std::uint64_t seed,
@@ -57,8 +63,17 @@ class EmulatorProcess {
   /// Number of the scenario's faults that have taken effect, by kind; after stop().
   [[nodiscard]] const std::map<std::string, int>& faults() const { return faults_; }
 
+  /// What the emulator counted, by name; after stop(). Empty if it did not end in order.
+  [[nodiscard]] const std::map<std::string, double>& counters() const { return counters_; }
+
   /// Returns how the process has ended and its last words, if it has ended or ends within `patience`.
   [[nodiscard]] std::optional<std::string> end_report(std::chrono::milliseconds patience = {});
+
+  /// Calls `on_end` from another thread if the process ends before stop(): devices that wait for an answer of it are
+  /// to wait no longer.
+  void watch(std::function<void()> on_end);
+  /// Ends that thread, so that what it would stop can be closed.
+  void end_watch() noexcept { watch_ = {}; }
 
   /// Ends the process and removes the directory.
   void stop() noexcept;
@@ -72,6 +87,8 @@ class EmulatorProcess {
   std::vector<report::FileDigest> files_;
   std::optional<io::ChildProcess> process_;
   std::map<std::string, int> faults_;
+  std::map<std::string, double> counters_;
+  std::jthread watch_;  // last: it uses the process
 };
 
 // File of the calibration that a mission names for its testbed.

@@ -120,6 +120,7 @@ void add_figures(const RunFigures& run, RunRecord& record) {
   figures["losses"] = losses;
   add_latency(std::move(latencies_s), figures);
   for (const auto& [kind, count] : run.faults) figures["faults_" + kind] = static_cast<double>(count);
+  for (const auto& [name, value] : run.generator_counters) figures["generator_" + name] = value;
   if (run.edges) add_edges(*run.edges, figures);
   for (const report::FileDigest& file : run.bench_files) record.summary.provenance.testbed.push_back(file);
 }

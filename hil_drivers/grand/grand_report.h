@@ -24,6 +24,7 @@ struct RunFigures {
   std::vector<report::FileDigest> bench_files;  ///< program and scenario of an emulator; empty: hardware
   bool is_emulated = false;
   std::map<std::string, int> faults;                              ///< faults of an emulator that have taken effect
+  std::map<std::string, double> generator_counters;               ///< of an emulator: samples as they arrived
   std::optional<EdgeStatistics> edges;                            ///< real time with edges only
   std::vector<std::pair<std::string, LinkStatistics>> receivers;  ///< by spacecraft
 };

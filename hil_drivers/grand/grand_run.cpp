@@ -371,6 +371,7 @@ void GrandRun::finish() noexcept {
   if (process_) {
     figures.bench_files = process_->files();
     figures.faults = process_->faults();
+    figures.generator_counters = process_->counters();
   }
   if (time_base_ && time_base_->edges() != nullptr) figures.edges = time_base_->edges()->statistics();
   for (const Vehicle& vehicle : vehicles_)

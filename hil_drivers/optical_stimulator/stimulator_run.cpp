@@ -121,6 +121,8 @@ void StimulatorRun::open_devices() {
   plan.rails = settings_.rails.empty() ? addresses.rails : settings_.rails;
   plan.display.x_display = settings_.x_display.empty() ? addresses.display : settings_.x_display;
   plan.display.output = settings_.output;
+  plan.display.width = calibration_->validity.display_width_px;
+  plan.display.height = calibration_->validity.display_height_px;
   plan.region = region_with_strip(camera_.region);
   plan.exposure_s = camera_.exposure_s;
   plan.packet_size = settings_.packet_size;

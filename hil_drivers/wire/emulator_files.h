@@ -9,4 +9,7 @@ inline constexpr const char* kAddressesFile = "addresses.json";
 /// Faults that have taken effect, one JSON object a line.
 inline constexpr const char* kFaultsFile = "faults.jsonl";
 
+/// What the emulator counted during its life, one JSON object of numbers by name; written at its end.
+inline constexpr const char* kCountersFile = "counters.json";
+
 }  // namespace vbar::wire

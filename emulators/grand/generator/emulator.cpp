@@ -40,7 +40,33 @@ Bench::Bench(boost::asio::io_context& context, const Scenario& scenario, const s
   write_addresses(scenario);
 }
 
-Bench::~Bench() = default;
+Bench::~Bench() {
+  try {
+    write_counters();
+  } catch (...) {
+    // A run without these counters says so by their absence.
+  }
+}
+
+void Bench::write_counters() const {
+  nlohmann::ordered_json counters;
+  for (std::size_t index = 0; index < engine_->vehicles(); ++index) {
+    const Vehicle& vehicle = engine_->vehicle(index);
+    const MotionCounters& motion = vehicle.motion().counters();
+    const auto set = [&](const char* name, auto value) { counters[vehicle.name() + "_samples" + name] = value; };
+    set("", motion.samples);
+    set("_missing", motion.missing);
+    set("_doubled", motion.doubled);
+    set("_out_of_order", motion.out_of_order);
+    set("_late", motion.late);
+    set("_rejected", motion.rejected);
+    const std::uint64_t used = motion.samples - motion.doubled - motion.rejected;
+    if (engine_->is_lock_step() || used == 0) continue;
+    set("_lead_min_ms", 1e3 * motion.lead_min_s);
+    set("_lead_mean_ms", 1e3 * motion.lead_sum_s / static_cast<double>(used));
+  }
+  std::ofstream(directory_.path() / vbar::wire::kCountersFile) << counters.dump(2) << "\n";
+}
 
 void Bench::write_addresses(const Scenario& scenario) const {
   nlohmann::ordered_json addresses;

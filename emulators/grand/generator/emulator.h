@@ -20,7 +20,7 @@ class Bench {
   /// Throws std::runtime_error, std::invalid_argument; each one sentence.
   Bench(boost::asio::io_context& context, const Scenario& scenario, const std::filesystem::path& data_directory,
         std::filesystem::path directory, const ReceiverFactory& make_receiver);
-  /// Removes the files it made, except the list of faults.
+  /// Removes the files it made, except the list of faults, and writes the counters of the samples received.
   ~Bench();
   Bench(const Bench&) = delete;
   Bench& operator=(const Bench&) = delete;
@@ -31,6 +31,7 @@ class Bench {
 
  private:
   void write_addresses(const Scenario& scenario) const;
+  void write_counters() const;
 
   emulators::EmulatorDirectory directory_;
   std::unique_ptr<EdgeBroadcaster> edges_;

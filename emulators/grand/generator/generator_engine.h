@@ -50,6 +50,7 @@ class GeneratorEngine final : public Engine {
 
   // Interface of the program and the faults.
   [[nodiscard]] Vehicle& vehicle(std::size_t index) { return *vehicles_[index]; }
+  [[nodiscard]] bool is_lock_step() const { return scenario_.pace == Pace::kLockStep; }
   /// Time up to which every vehicle has moved; empty if the generator does not run.
   [[nodiscard]] std::optional<fsw::Duration> time() const;
   [[nodiscard]] std::optional<fsw::Duration> time_of(std::size_t vehicle) const;
@@ -86,7 +87,6 @@ class GeneratorEngine final : public Engine {
   // Scaled real time.
   [[nodiscard]] std::chrono::nanoseconds on_the_wall(fsw::Duration span) const;
   [[nodiscard]] fsw::Duration of_the_generator(Clock::duration span) const;
-  [[nodiscard]] bool is_lock_step() const { return scenario_.pace == Pace::kLockStep; }
 
   Scenario scenario_;
   std::filesystem::path data_directory_;

@@ -23,6 +23,7 @@ constexpr double kMinRadius_m = 6.2e6;
 constexpr double kMaxRadius_m = 5.0e7;
 // More samples than a lead of 10 s at 1 kHz has are a flood.
 constexpr std::size_t kMaxPending = 10'000;
+constexpr std::size_t kArrivals = 256;
 
 bool is_usable(const TrajectorySample& sample) {
   const bool finite = sample.position_ecef_m.allFinite() && sample.velocity_ecef_mps.allFinite() &&
@@ -42,11 +43,11 @@ Reception VehicleMotion::receive(const TrajectorySample& sample) {
     ++counters_.rejected;
     return Reception::kRejected;
   }
-  const auto is_same = [&](const Pending& pending) { return pending.sample.time == sample.time; };
-  if (std::ranges::any_of(pending_, is_same) || (current_ && current_->time == sample.time)) {
+  if (std::ranges::find(arrived_, sample.time) != arrived_.end()) {
     ++counters_.doubled;
     return Reception::kDoubled;
   }
+  count_arrival(sample.time);
   const Duration from = std::max(sample.time, computed());
   const auto replaces = [&](const Pending& pending) {
     return pending.from <= from && pending.sample.time > sample.time;
@@ -57,8 +58,6 @@ Reception VehicleMotion::receive(const TrajectorySample& sample) {
   }
   const bool late = is_late(sample);
   if (late) ++counters_.late;
-  if (current_ && sample.time > newest_)
-    period_ = std::min(period_.value_or(span(newest_, sample.time)), span(newest_, sample.time));
   newest_ = std::max(newest_, sample.time);
   if (from > now_) {
     const auto place = std::ranges::upper_bound(pending_, from, {}, &Pending::from);
@@ -68,6 +67,21 @@ Reception VehicleMotion::receive(const TrajectorySample& sample) {
     use(sample);
   }
   return late ? Reception::kLate : Reception::kAccepted;
+}
+
+void VehicleMotion::count_arrival(Duration time) {
+  const double lead_s = seconds(span(now_, time));
+  counters_.lead_min_s = arrived_.empty() ? lead_s : std::min(counters_.lead_min_s, lead_s);
+  counters_.lead_sum_s += lead_s;
+  if (!arrived_.empty() && time > newest_) {
+    const Duration gap = span(newest_, time);
+    if (period_) counters_.missing += static_cast<std::uint64_t>((gap.ns + period_->ns / 2) / period_->ns - 1);
+    period_ = std::min(period_.value_or(gap), gap);
+  } else if (counters_.missing > 0) {
+    --counters_.missing;
+  }
+  arrived_.push_back(time);
+  if (arrived_.size() > kArrivals) arrived_.pop_front();
 }
 
 bool VehicleMotion::is_late(const TrajectorySample& sample) const {

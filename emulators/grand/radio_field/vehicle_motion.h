@@ -14,6 +14,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <vector>
 
@@ -41,6 +42,9 @@ enum class Reception {
 struct MotionCounters {
   std::uint64_t samples = 0;  ///< number of samples received
   std::uint64_t late = 0, doubled = 0, out_of_order = 0, rejected = 0, snaps = 0;
+  std::uint64_t missing = 0;  ///< between the samples received, by the shortest time from one to the next
+  double lead_sum_s = 0.0;    ///< of the usable samples: own time minus time of arrival
+  double lead_min_s = 0.0;
 };
 
 class VehicleMotion {
@@ -51,6 +55,7 @@ class VehicleMotion {
 
   explicit VehicleMotion(fsw::Duration join) : join_(join) {}
 
+  /// Counts a sample and, unless it is ignored, uses it.
   Reception receive(const TrajectorySample& sample);
 
   /// Moves up to `time`, not before now(). A sample of exactly that time is used from the next call on, so that at() is
@@ -96,6 +101,7 @@ class VehicleMotion {
   };
 
   void use(const TrajectorySample& sample);
+  void count_arrival(fsw::Duration time);
   [[nodiscard]] fsw::Duration computed() const { return now_ + advance_; }
   [[nodiscard]] bool is_late(const TrajectorySample& sample) const;
   [[nodiscard]] static MotionState extrapolated(const TrajectorySample& sample, fsw::Duration time);
@@ -106,6 +112,7 @@ class VehicleMotion {
   fsw::Duration now_;
   fsw::Duration newest_;
   std::optional<fsw::Duration> period_;  ///< shortest time from one sample to the next
+  std::deque<fsw::Duration> arrived_;    ///< times of the last samples, which tell a double from a straggler
   std::optional<TrajectorySample> current_;
   Join joined_;
   std::vector<Pending> pending_;  ///< by the time from which it is used, rising; all after now_

@@ -101,11 +101,14 @@ struct Display::Window {
     const int output = output_named(settings.output);
     SDL_Rect bounds;
     if (SDL_GetDisplayBounds(output, &bounds) != 0) fail_by_sdl("its size is unknown");
-    if (bounds.w != settings.width || bounds.h != settings.height)
+    const bool is_calibrated = settings.width > 0;
+    if (is_calibrated && (bounds.w != settings.width || bounds.h != settings.height))
       throw std::runtime_error(fmt::format("it is of {} x {} pixels, and the calibration is for one of {} x {}",
                                            bounds.w, bounds.h, settings.width, settings.height));
     left = bounds.x;
     top = bounds.y;
+    width = bounds.w;
+    height = bounds.h;
     window = SDL_CreateWindow("vbar", left, top, bounds.w, bounds.h,
                               SDL_WINDOW_BORDERLESS | SDL_WINDOW_ALWAYS_ON_TOP | SDL_WINDOW_FULLSCREEN_DESKTOP);
     if (window == nullptr) fail_by_sdl("no window can be opened");
@@ -141,7 +144,7 @@ struct Display::Window {
 
   SDL_Window* window = nullptr;
   _XDisplay* connection = nullptr;
-  int left = 0, top = 0;
+  int left = 0, top = 0, width = 0, height = 0;
   bool is_lost = false;
   bool is_silent = false;  ///< lost because the server did not answer
 };
@@ -149,6 +152,8 @@ struct Display::Window {
 Display::Display(const DisplaySettings& settings) : settings_(settings) {
   try {
     window_ = std::make_unique<Window>(settings);
+    settings_.width = window_->width;
+    settings_.height = window_->height;
     if (const std::string complaint = gamma_complaint(window_->connection); !complaint.empty())
       throw std::runtime_error(complaint);
     check_pixels();

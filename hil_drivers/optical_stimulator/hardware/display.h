@@ -13,7 +13,7 @@ namespace vbar::optical_stimulator {
 struct DisplaySettings {
   std::string x_display;  ///< ":7"; empty: that of the environment
   std::string output;     ///< its name ("HDMI-1"); empty: the only one
-  int width = 1920, height = 1200;
+  int width = 0, height = 0;  ///< as calibrated; 0: as the output is
   std::chrono::milliseconds answer_limit{5000};  ///< wait for the X server; then it counts as lost
 };
 
@@ -27,6 +27,9 @@ class Display {
   ~Display();
   Display(const Display&) = delete;
   Display& operator=(const Display&) = delete;
+
+  [[nodiscard]] int width() const { return settings_.width; }
+  [[nodiscard]] int height() const { return settings_.height; }
 
   /// Returns when the pixels of the picture, which must have the display's size, are on the screen. Not from two
   /// threads at a time. Throws std::runtime_error if the window has been lost or the X server does not answer.

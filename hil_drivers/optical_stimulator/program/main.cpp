@@ -71,17 +71,16 @@ constexpr int kLensAxis = 1, kDisplayAxis = 2;
 class WiredScreen final : public Screen {
  public:
   WiredScreen(const DisplaySettings& settings, std::chrono::milliseconds settle)
-      : settings_(settings), settle_(settle), display_(settings) {}
+      : settle_(settle), display_(settings) {}
 
-  [[nodiscard]] int width() const override { return settings_.width; }
-  [[nodiscard]] int height() const override { return settings_.height; }
+  [[nodiscard]] int width() const override { return display_.width(); }
+  [[nodiscard]] int height() const override { return display_.height(); }
   void show(const Picture& counts) override {
     display_.show(counts);
     std::this_thread::sleep_for(settle_);
   }
 
  private:
-  DisplaySettings settings_;
   std::chrono::milliseconds settle_;
   Display display_;
 };

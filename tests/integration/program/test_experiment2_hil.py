@@ -140,6 +140,7 @@ class Experiment2Hil(unittest.TestCase):
         _, errors = process.communicate(timeout=120)
         self.assertNotEqual(process.returncode, 0)
         self.assertEqual(errors.count("run incomplete"), 1, errors)
+        self.assertIn("has ended: killed by signal 9", errors)
         self.assertFalse(summary_of(folder)["complete"])
         self.assertEqual(vbar("replay", folder).returncode, 0)  # what was flown
 

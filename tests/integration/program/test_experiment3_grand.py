@@ -201,7 +201,12 @@ class Experiment3GrandFaults(unittest.TestCase):
     def test_samples_lost_and_doubled(self):
         faults = [{"kind": kind, "time_s": 20.0 + 10.0 * k, "vehicle": "servicer", "count": 3}
                   for k, kind in enumerate(("samples_lost", "samples_doubled", "samples_swapped"))]
-        self.assertTrue(self.fly_with(Scenario(self.folder, *faults), minutes(1))["complete"])
+        summary = self.fly_with(Scenario(self.folder, *faults), minutes(1))
+        self.assertTrue(summary["complete"])
+        grand = summary["grand"]
+        arrived = [grand[f"generator_servicer_samples{name}"] for name in ("_missing", "_doubled", "_out_of_order")]
+        self.assertEqual(arrived, [3, 3, 3])
+        self.assertEqual([grand[f"generator_target_samples{name}"] for name in ("_missing", "_doubled", "_out_of_order")], [0, 0, 0])
 
     def check_that_integers_are_found_again(self, fault):
         """A wrong integer displaces the solution by decimetres."""

@@ -127,6 +127,14 @@ TEST(Display, AnotherSizeOrOutputIsRefusedByName) {
   EXPECT_THAT(refusal({server.name(), "OLED-1", kWidth, kHeight}), HasSubstr("no output \"OLED-1\""));
 }
 
+TEST(Display, WithoutACalibrationItIsOfItsOwnSize) {
+  const Xvfb server(1280, 1024);
+  Display display({server.name()});
+  EXPECT_EQ(display.width(), 1280);
+  EXPECT_EQ(display.height(), 1024);
+  EXPECT_NO_THROW(display.show(Picture(1280, 1024)));
+}
+
 TEST(Display, AServerThatIsStoppedForLessIsWaitedFor) {
   const Xvfb server(kWidth, kHeight);
   Display display({server.name(), "", kWidth, kHeight, std::chrono::minutes(5)});
