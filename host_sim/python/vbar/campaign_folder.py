@@ -12,6 +12,7 @@ import subprocess
 import pandas
 
 from vbar import run_folder
+from vbar.programs import program
 
 
 class Campaign:
@@ -27,7 +28,7 @@ class Campaign:
     @property
     def results(self):
         """results.csv, which vbar campaign report writes again: a row for each case."""
-        done = subprocess.run([run_folder.program(), "campaign", "report", str(self.folder)], capture_output=True, text=True)
+        done = subprocess.run([program(), "campaign", "report", str(self.folder)], capture_output=True, text=True)
         file = self.folder / "results.csv"
         if not file.is_file():
             raise RuntimeError(done.stderr.strip())
@@ -51,7 +52,7 @@ def campaign(folder):
 
 def start_campaign(file, out):
     """Flies the campaign of a file into the folder `out`, and returns it. RuntimeError has the sentence of vbar if it is refused."""
-    done = subprocess.run([run_folder.program(), "campaign", "run", str(file), "--out", str(out)], capture_output=True, text=True)
+    done = subprocess.run([program(), "campaign", "run", str(file), "--out", str(out)], capture_output=True, text=True)
     if not (pathlib.Path(out) / "campaign.json").is_file():
         raise RuntimeError(done.stderr.strip() or f"vbar campaign run ended with exit code {done.returncode}")
     return Campaign(out)

@@ -1,7 +1,7 @@
 
 
 # Beside the messages: runs, campaigns and verifications as tables of pandas, which is imported when one is read.
-_READERS = {"run": "run_folder", "start": "run_folder", "Run": "run_folder", "program": "run_folder", "unit_of": "run_folder",
+_READERS = {"run": "run_folder", "start": "run_folder", "Run": "run_folder", "program": "programs", "unit_of": "run_folder",
             "campaign": "campaign_folder", "start_campaign": "campaign_folder", "verification": "campaign_folder"}
 
 

@@ -10,12 +10,12 @@ Cells have the bits of the files. A run that goes on, or was killed, is read as 
 import functools
 import io
 import json
-import os
 import pathlib
-import shutil
 import subprocess
 
 import pandas
+
+from vbar.programs import program
 
 # Endings of the names of columns, and their units. A name without one of them is a number of its own, or a word.
 UNITS = {"m": "m", "km": "km", "mm": "mm", "mps": "m/s", "mmps": "mm/s", "m2": "m^2", "rad": "rad", "radps": "rad/s", "deg": "deg",
@@ -28,20 +28,6 @@ AXES = ("rtn_n", "prefit_s")
 def unit_of(column):
     """The unit that the name of a column ends in; empty for a number without unit, and for a word."""
     return "" if column.endswith(AXES) else UNITS.get(column.rpartition("_")[2], "") if "_" in column else ""
-
-
-def program():
-    """The program vbar: $VBAR, that of this package, or the first one of PATH."""
-    if "VBAR" in os.environ:
-        return os.environ["VBAR"]
-    here = pathlib.Path(__file__).resolve().parent
-    for beside in (here.parents[1] / "vbar", here.parents[3] / "bin" / "vbar"):
-        if os.access(beside, os.X_OK) and beside.is_file():
-            return str(beside)
-    found = shutil.which("vbar")
-    if not found:
-        raise FileNotFoundError("the program vbar is neither beside this package nor in PATH, and VBAR does not name it")
-    return found
 
 
 @functools.cache

@@ -67,6 +67,12 @@ class Column {
     return (this.#numbers ??= this.#data.form === 'text' ? Float64Array.from(this.cells, (cell) => (cell === '' ? NaN : Number(cell)))
       : new Float64Array(this.bits.buffer));
   }
+  /** Adds cells of rows that follow. */
+  append(cells) {
+    this.#cells = [...this.cells, ...cells];
+    this.#data = { form: 'text' };
+    this.#numbers = this.#bits = undefined;
+  }
   get isNumeric() { return this.#data.form !== 'text' || this.cells.every((cell, row) => cell === '' || !Number.isNaN(this.numbers[row])); }
   get hasValues() { return this.#data.form === 'text' ? this.cells.some((cell) => cell !== '') : this.numbers.some((number) => !Number.isNaN(number)); }
 }
@@ -80,6 +86,15 @@ class Table {
     this.rows = head.rows;
     this.rowsOfFile = head.rows_of_file;
     this.columns = new Map();
+  }
+  /** Adds rows of cells, which have the order of `names`. */
+  append(names, rows) {
+    names.forEach((name, k) => {
+      if (!this.columns.has(name)) this.columns.set(name, new Column(this, { name, meaning: '' }, { form: 'text', bytes: new Uint8Array() }));
+      this.columns.get(name).append(rows.map((cells) => cells[k] ?? ''));
+    });
+    this.rows += rows.length;
+    this.rowsOfFile += rows.length;
   }
   column(name) { return this.columns.get(name); }
   numbers(name) { return this.columns.get(name)?.numbers; }
@@ -105,6 +120,10 @@ export class Run {
     this.tables = new Map();
   }
   table(name) { return this.tables.get(name); }
+  append(name, columns, rows) {
+    if (!this.tables.has(name)) this.tables.set(name, new Table({ file: `${name}.csv`, rows: 0, rows_of_file: 0 }));
+    this.tables.get(name).append(columns, rows);
+  }
   column(id) {
     const dot = id.indexOf('.');
     return this.table(id.slice(0, dot))?.column(id.slice(dot + 1));
