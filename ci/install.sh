@@ -38,7 +38,8 @@ peers=(aravis-tools aravis-tools-cli nftables chrony python3-crcmod python3-nump
   busybox-static   # a root with a shell only (ci/bundle.sh)
   gdb-multiarch    # loads the flight image through a debug server
   xilinx-bootgen   # BOOT.BIN of the flight image
-  slurm-wlm munge)  # a cluster on loopback, for campaigns
+  slurm-wlm munge  # a cluster on loopback, for campaigns
+  python3-pandas python3-matplotlib octave)  # the notebooks and readers of run folders
 train=("${images[@]}" python3 python3-numpy python3-torch)
 
 # The page of a run is made of npm packages, and the wire formats' peer is one. Only if no other npm is installed: a vendor's node

@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
 
-#include <arpa/inet.h>
 #include <fmt/format.h>
 
 #include "hil_drivers/common/emulator_process.h"
@@ -16,6 +14,7 @@
 #include "hil_drivers/external/external_truth.h"
 #include "host_sim/io/byte_channel.h"
 #include "host_sim/io/child_process.h"
+#include "host_sim/mission/udp_address.h"
 #include "pil_bridge/remote_computer.h"
 #include "pil_bridge/transport.h"
 
@@ -26,24 +25,12 @@ namespace {
 using mission::from_to;
 using mission::TableReader;
 
-/// "127.0.0.1:5005"
-void read_address(const TableReader& section, Program& program) {
-  const std::string text = section.text("udp", "");
-  if (text.empty()) return;
-  const std::size_t colon = text.rfind(':');
-  const std::string_view digits = colon == std::string::npos ? "" : std::string_view(text).substr(colon + 1);
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), program.port);
-  program.host = text.substr(0, colon);
-  in_addr ignored{};
-  if (error != std::errc{} || end != digits.data() + digits.size() || program.port == 0 ||
-      ::inet_pton(AF_INET, program.host.c_str(), &ignored) != 1)
-    section.refuse_value("udp", "an IPv4 address and a port, \"127.0.0.1:5005\"");
-}
-
 Program read_program(const TableReader& section, bool is_required) {
   Program program;
   program.command = section.text("program", "");
-  read_address(section, program);
+  const mission::UdpAddress address = mission::read_udp_address(section, "udp");
+  program.host = address.host;
+  program.port = address.port;
   const bool has_command = program.command.find_first_not_of(' ') != std::string::npos;
   if (has_command && program.port != 0) section.refuse_value("udp", "nothing beside program");
   if (is_required && !has_command && program.port == 0)

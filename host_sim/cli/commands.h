@@ -15,6 +15,7 @@ struct RunOptions {
   bool force = false;                  ///< a run that `out` holds is replaced
   bool check = false;                  ///< only the mission file is read
   bool quiet = false;                  ///< nothing is printed but errors
+  bool view = false;                   ///< vbar_watch serves the page of the run while it goes on
 };
 int run_command(const RunOptions& options);
 

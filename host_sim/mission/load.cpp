@@ -44,6 +44,7 @@ constexpr Section kSections[] = {{"mission", without_installation<read_general>}
                                  {"clock", read_clock},
                                  {"links", without_installation<read_links>},
                                  {"lcm", without_installation<read_lcm>},
+                                 {"telemetry", without_installation<read_telemetry>},
                                  {"record", without_installation<read_record>},
                                  {"limit", without_installation<read_limits>}};
 

@@ -26,6 +26,7 @@
 #include "host_sim/engine/link_model.h"
 #include "host_sim/mission/attitude.h"
 #include "host_sim/mission/mission_error.h"
+#include "host_sim/mission/udp_address.h"
 #include "host_sim/truth/truth_settings.h"
 
 namespace vbar::mission {
@@ -269,6 +270,11 @@ struct LcmMirror {
   std::string url;
 };
 
+/// Live packets as datagrams, for ground systems.
+struct TelemetryLink {
+  UdpAddress udp;  ///< port 0: none
+};
+
 /// Content of the log of a run for the images of a digital camera.
 enum class ImagesInLog {
   kRecipes,  ///< from which they are regenerated
@@ -310,6 +316,7 @@ struct Mission {
   engine::LinkSettings
       board_link;  ///< the simulated link between a spacecraft's sensors or actuators and its flight computer
   LcmMirror lcm;
+  TelemetryLink telemetry;
   Record record;
   std::vector<Limit> limits;          ///< limits that vbar check applies, in the order of the file
   std::vector<NamedFile> data_files;  ///< that the mission names

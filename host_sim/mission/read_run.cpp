@@ -247,6 +247,12 @@ void read_lcm(const TableReader& document, Mission& mission) {
   section.finish();
 }
 
+void read_telemetry(const TableReader& document, Mission& mission) {
+  const TableReader section = document.table("telemetry");
+  mission.telemetry.udp = read_udp_address(section, "udp");
+  section.finish();
+}
+
 namespace {
 
 constexpr std::size_t kMaxSamples = 1000;

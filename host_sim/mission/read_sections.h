@@ -31,6 +31,7 @@ void read_faults(const TableReader& document, Mission& mission);                
 void read_clock(const TableReader& document, Mission& mission, const Installation& installation);  // [clock]
 void read_links(const TableReader& document, Mission& mission);                                    // [links.board]
 void read_lcm(const TableReader& document, Mission& mission);                                      // [lcm]
+void read_telemetry(const TableReader& document, Mission& mission);                                // [telemetry]
 void read_record(const TableReader& document, Mission& mission);                                   // [record]
 void read_limits(const TableReader& document, Mission& mission);                                   // [[limit]]
 

@@ -9,6 +9,7 @@
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
+#include "host_sim/io/udp_socket.h"
 #include "host_sim/report/extension.h"
 #include "host_sim/report/lcm_mirror.h"
 #include "host_sim/report/provenance.h"
@@ -74,15 +75,37 @@ class PacketRecorders::Mirror final : public RunObserver {
   report::LcmMirror mirror_;
 };
 
+/// Each space packet as one datagram. It never fails a run: what the network does not accept is lost.
+class PacketRecorders::Datagrams final : public RunObserver {
+ public:
+  explicit Datagrams(const mission::UdpAddress& peer) : socket_(peer.host, peer.port, 0, 0) {}
+  void on_step(std::uint32_t, fsw::GpsTime, std::span<const pil::Packet> inputs,
+               std::span<const pil::Packet> outputs) override {
+    for (const std::span<const pil::Packet> packets : {inputs, outputs})
+      for (const pil::Packet& packet : packets) send(packet);
+  }
+
+ private:
+  void send(const pil::Packet& packet) {
+    try {
+      socket_.send(packet);
+    } catch (const io::ChannelError&) {
+    }
+  }
+  io::UdpSocket socket_;
+};
+
 PacketRecorders::PacketRecorders(const mission::Mission& mission, const std::filesystem::path& folder,
                                  twins::EventCheck check)
     : hash_(std::make_unique<Hash>()) {
   if (mission.record.packets)
     log_ = std::make_unique<Log>(report::packet_log_file(folder), mission.record.images, std::move(check));
   if (mission.lcm.mirror) mirror_ = std::make_unique<Mirror>(mission.lcm.url);
+  if (mission.telemetry.udp.port != 0) datagrams_ = std::make_unique<Datagrams>(mission.telemetry.udp);
   if (log_) observers_.push_back(log_.get());
   observers_.push_back(hash_.get());
   if (mirror_) observers_.push_back(mirror_.get());
+  if (datagrams_) observers_.push_back(datagrams_.get());
 }
 
 PacketRecorders::~PacketRecorders() = default;

@@ -1,5 +1,6 @@
 #pragma once
-// Recorders of the packets of a run: the log, the hashes and, if the mission asks for it, the LCM bus.
+// Recorders of the packets of a run: the log, the hashes and, if the mission asks for them, the LCM bus and
+// datagrams to a ground system.
 
 #include <filesystem>
 #include <memory>
@@ -21,8 +22,8 @@ namespace vbar::app {
 
 class PacketRecorders {
  public:
-  /// Starts packets.lcmlog in `folder` and the LCM mirror, each if the mission asks for it. `check` is that of the log.
-  /// Throws std::runtime_error.
+  /// Starts packets.lcmlog in `folder` and the LCM mirror and the datagrams, each if the mission asks for it. `check`
+  /// is that of the log. Throws std::runtime_error.
   PacketRecorders(const mission::Mission& mission, const std::filesystem::path& folder, twins::EventCheck check = {});
   ~PacketRecorders();
   PacketRecorders(const PacketRecorders&) = delete;
@@ -42,9 +43,11 @@ class PacketRecorders {
   class Log;
   class Hash;
   class Mirror;
+  class Datagrams;
   std::unique_ptr<Log> log_;
   std::unique_ptr<Hash> hash_;
   std::unique_ptr<Mirror> mirror_;
+  std::unique_ptr<Datagrams> datagrams_;
   std::vector<RunObserver*> observers_;
 };
 

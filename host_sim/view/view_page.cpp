@@ -68,22 +68,25 @@ json json_of(const ViewedRun& run, const std::filesystem::path& data_directory) 
   const report::RunRecord& record = run.record;
   std::set<std::string> picture_times;
   for (const report::GalleryImage& image : record.gallery) picture_times.insert(fmt::format("{}", image.time_s));
-  TableEmbedder tables(std::move(picture_times));
+  std::vector<CellTable> tables;
   for (const report::DescribedTable& described : report::described_tables(record.extensions))
-    if (const CellTable table = cells_of(record, described); table.rows() > 0) tables.add(table);
+    if (CellTable table = cells_of(record, described); table.rows() > 0) tables.push_back(std::move(table));
   json scene;
   std::string note = run.note;
   if (run.mission != nullptr) {
     try {
       scene = scene_of(*run.mission, record, data_directory);
-      tables.add(sunlight_of(*run.mission, record));
+      tables.push_back(sunlight_of(*run.mission, record));
     } catch (const std::exception& error) {
       note = error.what();
     }
   }
-  return {{"name", run.name},          {"summary", json::parse(report::summary_json(record.summary, record.waypoints))},
-          {"tables", tables.take()},   {"pictures", pictures_of(record)},
-          {"scene", std::move(scene)}, {"note", std::move(note)}};
+  return {{"name", run.name},
+          {"summary", json::parse(report::summary_json(record.summary, record.waypoints))},
+          {"tables", embedded(tables, kMaxTableBytes, picture_times)},
+          {"pictures", pictures_of(record)},
+          {"scene", std::move(scene)},
+          {"note", std::move(note)}};
 }
 
 /// JSON inside a script element: nothing in it can end the element, or begin a comment.

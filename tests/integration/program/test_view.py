@@ -27,6 +27,29 @@ def runs_of(page):
     return json.loads(blocks[0])
 
 
+def numbers_of(form, data, reference):
+    """The bits of a column of numbers, as embedded_table.h states them."""
+    rows = len(data) // 8
+    numbers = [sum(data[plane * rows + row] << 8 * plane for plane in range(8)) for row in range(rows)]
+    if form == "number":
+        return numbers
+    bits, before = [], 0
+    for row, folded in enumerate(numbers):
+        difference = folded >> 1 ^ -(folded & 1)
+        before = ((reference[row] if form == "difference" else before) + difference) % 2**64
+        bits.append(before)
+    return bits
+
+
+def text_of(number):
+    value = struct.unpack("<d", struct.pack("<Q", number))[0]
+    return "" if value != value else repr(value)
+
+
+def number_bits(cells):
+    return [struct.unpack("<Q", struct.pack("<d", float(cell or "nan")))[0] for cell in cells]
+
+
 def tables_of(run):
     """{file: {column: cells}} as the page has them."""
     tables = []
@@ -37,11 +60,24 @@ def tables_of(run):
             if "same" in column:
                 cells = tables[column["same"][0]][column["same"][1]][1]
             else:
-                cells = data[offset:offset + column["bytes"]].decode().split("\n")[:-1]
+                part = data[offset:offset + column["bytes"]]
                 offset += column["bytes"]
+                if column["form"] == "text":
+                    cells = part.decode().split("\n")[:-1]
+                else:
+                    reference = number_bits(tables[column["of"][0]][column["of"][1]][1]) if "of" in column else None
+                    cells = [text_of(number) for number in numbers_of(column["form"], part, reference)]
             columns.append((column["name"], cells))
         assert offset == len(data)
     return {table["file"]: dict(columns) for table, columns in zip(run["tables"], tables)}
+
+
+def same_cell(a, b):
+    """Whether two cells are the same word, or numbers of the same bits."""
+    try:
+        return a == b or bits([a]) == bits([b])
+    except ValueError:
+        return False
 
 
 def file_of(path):
@@ -91,7 +127,11 @@ class View(unittest.TestCase):
         self.assertIn("truth.csv", files)
         self.assertEqual(sorted(name for name in tables if name), files)
         for name in files:
-            self.assertEqual(tables[name], file_of(self.run_folder / name), name)
+            columns = file_of(self.run_folder / name)
+            self.assertEqual(list(tables[name]), list(columns), name)
+            for column, cells in columns.items():
+                self.assertEqual(len(tables[name][column]), len(cells), (name, column))
+                self.assertTrue(all(map(same_cell, tables[name][column], cells)), (name, column))
 
     def test_the_page_loads_nothing(self):
         text = self.page.read_text(encoding="utf-8")

@@ -15,6 +15,13 @@ export class Cursor {
   onChange(listener) { this.#listeners.push(listener); }
   #tell() { for (const listener of this.#listeners) listener(this.t); }
 
+  /** Takes the steps of a run that goes on; an instant at its end stays there. */
+  extend(steps) {
+    const atEnd = this.t >= this.end;
+    this.steps = steps;
+    this.end = steps.at(-1);
+    if (atEnd && !this.#playing) this.set(this.end);
+  }
   set(t) {
     this.t = Math.min(Math.max(t, this.start), this.end);
     this.#tell();

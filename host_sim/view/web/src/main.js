@@ -2,6 +2,7 @@
 
 import { Cursor, Link, secondsOf } from './cursor.js';
 import { Motion, norm } from './frames.js';
+import { followRun } from './live.js';
 import { Numbers, valuesAt } from './numbers.js';
 import { Picture } from './picture.js';
 import { selectedPlots, tabsOf } from './plot_tabs.js';
@@ -33,7 +34,7 @@ function utc(run, t) {
 
 function headOf(runs, cursor, link) {
   const [run] = runs, { summary } = run;
-  const verdict = summary.complete ? summary.verdict : 'incomplete';
+  const verdict = summary.complete ? summary.verdict : location.protocol.startsWith('http') ? 'flying' : 'incomplete';
   const clock = make('span', { class: 'clock' }), range = make('b', { class: 'range', title: 'true distance to the target' });
   const entry = make('input', { class: 'time', title: 'time of the mission: 39.7h, 90min or 5400s', change() {
     const t = secondsOf(entry.value);
@@ -47,7 +48,7 @@ function headOf(runs, cursor, link) {
   speed.value = cursor.speed;
   const head = make('header', {},
     make('h1', { text: runs.map((r) => r.name).join(' | '), title: `${summary.mission}, seed ${summary.seed}` }),
-    make('span', { class: `status ${{ achieved: 'good', 'not judged': '' }[verdict] ?? 'bad'}`, text: verdict, title: summary.verdict_reason ?? summary.incomplete_reason ?? '' }),
+    make('span', { class: `status ${{ achieved: 'good', 'not judged': '', flying: '' }[verdict] ?? 'bad'}`, text: verdict, title: summary.verdict_reason ?? summary.incomplete_reason ?? '' }),
     make('span', { class: 'space' }), range, clock,
     make('span', { class: 'controls' },
       make('button', { text: '‹', title: 'a step back (←; with shift 10 steps)', click: () => cursor.step(-1) }), play,
@@ -182,12 +183,21 @@ async function start() {
   if (notes.length) side.append(make('p', { class: 'warning', text: `The mission of this run could not be read in full: ${notes.join('; ')}` }));
   new Numbers(side, run, cursor);
   new Picture(pictureElement, run, cursor);
-  new TimeBar(bar, run, cursor);
+  const timeBar = new TimeBar(bar, run, cursor);
   const choose = plotsOf(plotElement, runs, cursor, link);
   const { view, scene } = await sceneOf(sceneElement, runs, motions, cursor, link);
   keyboard(cursor, speed, view);
   cursor.onChange((t) => link.set('t', t === cursor.start ? '' : `${+(t / 3600).toFixed(6)}h`));
   link.onChange(() => { cursor.set(secondsOf(link.get('t')) ?? cursor.start); choose(link.get('tab')); });
+
+  const live = followRun(run, () => {
+    motions[0] = new Motion(run);
+    cursor.extend(run.table('truth').time);
+    timeBar.renew();
+    scene?.rebuildPaths();
+    choose(link.get('tab'));
+  });
+  if (live) cursor.set(cursor.end);
 
   // For scripts and tests: the state of the page, the cells of the tables, the values shown.
   window.vbarView = { runs, cursor, scene, motions, choose, valuesAt: (t) => valuesAt(run, t), rangeAt: (t) => norm(motions[0].frameAt(t).rho) };

@@ -1,5 +1,4 @@
-// A run as the page holds it: tables by name, columns as numbers or words, read from the cells of the CSV files when they
-// are first asked for.
+// A run as the page holds it: tables by name, columns as numbers or words, read when they are first asked for.
 
 export async function inflate(base64) {
   const text = atob(base64), packed = new Uint8Array(text.length);
@@ -19,30 +18,63 @@ export function indexAt(values, value) {
   return low - 1;
 }
 
+/** Returns numbers whose bytes are given plane by plane: all lowest ones, then all second ones, and so on. */
+function numbersOfPlanes(bytes) {
+  const rows = bytes.length / 8, whole = new Uint8Array(bytes.length);
+  for (let plane = 0; plane < 8; ++plane) for (let row = 0; row < rows; ++row) whole[8 * row + plane] = bytes[plane * rows + row];
+  return new BigUint64Array(whole.buffer);
+}
+
+const difference = (folded) => (folded >> 1n) ^ -(folded & 1n);
+
+/** Returns the bits of a column of numbers: as embedded_table.h has made its form. */
+function bitsOf(form, bytes, other) {
+  const bits = numbersOfPlanes(bytes);
+  if (form === 'step') for (let row = 0, before = 0n; row < bits.length; ++row) before = bits[row] = before + difference(bits[row]);
+  if (form === 'difference') other.bits.forEach((number, row) => { bits[row] = number + difference(bits[row]); });
+  return bits;
+}
+
 class Column {
-  #bytes; #cells; #numbers;
-  constructor(table, head, bytes) {
+  #data; #cells; #bits; #numbers;
+  /** `data`: form, bytes and, if those are of differences, the column from which. */
+  constructor(table, head, data) {
     this.table = table;
     this.name = head.name;
     this.meaning = head.meaning;
-    this.#bytes = bytes;
+    this.#data = data;
   }
   get id() { return `${this.table.name}.${this.name}`; }
+  get data() { return this.#data; }
+  /** The bits of each number, of a column that is not text. */
+  get bits() {
+    return (this.#bits ??= this.#data.form === 'text' ? new BigUint64Array(this.numbers.buffer) : bitsOf(this.#data.form, this.#data.bytes, this.#data.of));
+  }
   /** The text of each cell. */
   get cells() {
     if (!this.#cells) {
-      this.#cells = new TextDecoder().decode(this.#bytes).split('\n');
-      this.#cells.pop();
-      this.#bytes = null;
+      if (this.#data.form === 'text') {
+        this.#cells = new TextDecoder().decode(this.#data.bytes).split('\n');
+        this.#cells.pop();
+      } else {
+        this.#cells = Array.from(this.numbers, (number) => (Number.isNaN(number) ? '' : `${number}`));
+      }
     }
     return this.#cells;
   }
   /** The number of each cell; NaN of an empty one, or of a word. */
   get numbers() {
-    return (this.#numbers ??= Float64Array.from(this.cells, (cell) => (cell === '' ? NaN : Number(cell))));
+    return (this.#numbers ??= this.#data.form === 'text' ? Float64Array.from(this.cells, (cell) => (cell === '' ? NaN : Number(cell)))
+      : new Float64Array(this.bits.buffer));
   }
-  get isNumeric() { return this.cells.every((cell, row) => cell === '' || !Number.isNaN(this.numbers[row])); }
-  get hasValues() { return this.cells.some((cell) => cell !== ''); }
+  /** Adds cells of rows that follow. */
+  append(cells) {
+    this.#cells = [...this.cells, ...cells];
+    this.#data = { form: 'text' };
+    this.#numbers = this.#bits = undefined;
+  }
+  get isNumeric() { return this.#data.form !== 'text' || this.cells.every((cell, row) => cell === '' || !Number.isNaN(this.numbers[row])); }
+  get hasValues() { return this.#data.form === 'text' ? this.cells.some((cell) => cell !== '') : this.numbers.some((number) => !Number.isNaN(number)); }
 }
 
 const kTimes = ['time_s', 'execution_time_s', 'begin_s'];
@@ -54,6 +86,15 @@ class Table {
     this.rows = head.rows;
     this.rowsOfFile = head.rows_of_file;
     this.columns = new Map();
+  }
+  /** Adds rows of cells, which have the order of `names`. */
+  append(names, rows) {
+    names.forEach((name, k) => {
+      if (!this.columns.has(name)) this.columns.set(name, new Column(this, { name, meaning: '' }, { form: 'text', bytes: new Uint8Array() }));
+      this.columns.get(name).append(rows.map((cells) => cells[k] ?? ''));
+    });
+    this.rows += rows.length;
+    this.rowsOfFile += rows.length;
   }
   column(name) { return this.columns.get(name); }
   numbers(name) { return this.columns.get(name)?.numbers; }
@@ -79,6 +120,10 @@ export class Run {
     this.tables = new Map();
   }
   table(name) { return this.tables.get(name); }
+  append(name, columns, rows) {
+    if (!this.tables.has(name)) this.tables.set(name, new Table({ file: `${name}.csv`, rows: 0, rows_of_file: 0 }));
+    this.tables.get(name).append(columns, rows);
+  }
   column(id) {
     const dot = id.indexOf('.');
     return this.table(id.slice(0, dot))?.column(id.slice(dot + 1));
@@ -88,22 +133,18 @@ export class Run {
 
   static async read(head) {
     const run = new Run(head);
-    const places = [];
+    const tables = [];
+    const at = ([table, column]) => [...tables[table].columns.values()][column];
     for (const tableHead of head.tables) {
       const table = new Table(tableHead);
+      tables.push(table);
       const data = await inflate(tableHead.data);
       let offset = 0;
-      const bytesOf = [];
-      places.push(bytesOf);
       for (const column of tableHead.columns) {
-        if (column.same) {
-          bytesOf.push(places[column.same[0]][column.same[1]]);
-        } else {
-          bytesOf.push(data.subarray(offset, offset + column.bytes));
-          offset += column.bytes;
-        }
+        const form = column.same ? at(column.same).data
+          : { form: column.form, of: column.of && at(column.of), bytes: data.subarray(offset, offset += column.bytes) };
+        table.columns.set(column.name, new Column(table, column, form));
       }
-      tableHead.columns.forEach((column, k) => table.columns.set(column.name, new Column(table, column, bytesOf[k])));
       run.tables.set(table.name, table);
     }
     return run;

@@ -66,7 +66,24 @@ export class TimeBar {
     Object.assign(this, { element, run, cursor });
     this.canvas = document.createElement('canvas');
     element.append(this.canvas);
-    Object.assign(element, { tabIndex: 0, role: 'slider', ariaLabel: 'time of the mission', ariaValueMin: String(cursor.start), ariaValueMax: String(cursor.end) });
+    Object.assign(element, { tabIndex: 0, role: 'slider', ariaLabel: 'time of the mission' });
+    this.#read();
+    this.#listen();
+    cursor.onChange(() => this.draw());
+    new ResizeObserver(() => this.draw()).observe(element);
+    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.draw());
+  }
+
+  /** Takes the rows that a run has now. */
+  renew() {
+    this.#read();
+    this.canvas.width = 0;  // its height may be another
+    this.draw();
+  }
+
+  #read() {
+    const { run, cursor, element } = this;
+    Object.assign(element, { ariaValueMin: String(cursor.start), ariaValueMax: String(cursor.end) });
     const waypoints = run.table('waypoints');
     this.waypoints = waypoints ? [...waypoints.time].map((t, k) => ({ begin: t, end: t, word: `waypoint ${waypoints.cells('index')[k]}`, index: waypoints.cells('index')[k] })) : [];
     this.burns = burnsOf(run);
@@ -79,10 +96,6 @@ export class TimeBar {
     if (this.faults.length) this.lanes.push({ name: 'faults', height: 10, items: this.faults, colour: () => '--bad' });
     this.height = 20 + this.lanes.reduce((sum, lane) => sum + lane.height + 3, 0) + 16;
     element.style.height = `${this.height}px`;
-    this.#listen();
-    cursor.onChange(() => this.draw());
-    new ResizeObserver(() => this.draw()).observe(element);
-    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.draw());
   }
 
   #x(t) { return kLeft + ((t - this.cursor.start) / (this.cursor.end - this.cursor.start || 1)) * (this.element.clientWidth - kLeft - kRight); }

@@ -50,21 +50,24 @@ INSTANTIATE_TEST_SUITE_P(
                   "step_s or seed"},
         BadChange{"UnknownSection", "[mission]", "[trut]\n[mission]", "[trut]",
                   "trut: found an unknown key (did you mean truth?); accepted: mission, truth, testbed, waypoint, "
-                  "spacecraft, guidance, safety, navigation, burn, fault, clock, links, lcm, record, limit, "
-                  "constellation or extends"},
+                  "spacecraft, guidance, safety, navigation, burn, fault, clock, links, lcm, telemetry, record, "
+                  "limit, constellation or extends"},
         BadChange{"WrongTypeText", "duration_h = 2.0", "duration_h = \"two\"", "duration_h",
                   "mission.duration_h: found the text \"two\"; accepted: a number above 0, up to 2000"},
         BadChange{"WrongTypeInteger", "[mission]", "[mission]\nseed = 1.0", "seed",
                   "mission.seed: found the number 1; accepted: an integer from 0 to 9223372036854775807"},
         BadChange{"WrongTypeBoolean", "[mission]", "[lcm]\nmirror = 1\n[mission]", "mirror",
                   "lcm.mirror: found the integer 1; accepted: true or false"},
+        BadChange{"AddressWithoutPort", "[mission]", "[telemetry]\nudp = \"127.0.0.1\"\n[mission]", "udp",
+                  "telemetry.udp: found the text \"127.0.0.1\"; accepted: an IPv4 address and a port, "
+                  "\"127.0.0.1:5005\""},
         BadChange{"WrongTypeTable", "[mission]", "truth = 3\n[mission]", "truth",
                   "truth: found the integer 3; accepted: a table"},
         BadChange{
             "WrongTypeOfArrayOfTables", "[mission]", "waypoint2 = 1\n[mission]", "waypoint2",
             "waypoint2: found an unknown key (did you mean waypoint?); accepted: mission, truth, testbed, waypoint, "
-            "spacecraft, guidance, safety, navigation, burn, fault, clock, links, lcm, record, limit, constellation or "
-            "extends"},
+            "spacecraft, guidance, safety, navigation, burn, fault, clock, links, lcm, telemetry, record, limit, "
+            "constellation or extends"},
         BadChange{"MissingRequiredKey", "duration_h = 2.0\n", "", "[mission]",
                   "mission.duration_h: found nothing; accepted: a number above 0, up to 2000"},
         BadChange{"NotANumber", "duration_h = 2.0", "duration_h = nan", "duration_h",

@@ -54,18 +54,46 @@ TEST(EmbeddedTable, RowsOfAPictureStayTogether) {
 TEST(EmbeddedTable, EqualColumnsAreThereOnce) {
   CellTable table = long_table(10, 1, 2);
   table.columns.push_back({"again", "", table.columns[1].cells});
-  TableEmbedder embedder;
-  embedder.add(table);
-  embedder.add(table);
-  const nlohmann::json tables = embedder.take();
+  const nlohmann::json tables = embedded(std::vector{table, table});
   EXPECT_EQ(tables[0]["columns"][3]["same"], (nlohmann::json{0, 1}));
-  EXPECT_EQ(tables[0]["columns"][1]["bytes"], [&] {
-    std::size_t size = 0;
-    for (const std::string& cell : table.columns[1].cells) size += cell.size() + 1;
-    return size;
-  }());
   for (std::size_t column = 0; column < 3; ++column)
     EXPECT_EQ(tables[1]["columns"][column]["same"], (nlohmann::json{0, column}));
+}
+
+/// The second table differs from the first in one row, as an estimate that is withdrawn at times from the telemetry.
+TEST(EmbeddedTable, AColumnOfTheSameNameIsADifference) {
+  CellTable first{"a.csv", {{"x_m", "", {}}}}, second{"b.csv", {{"x_m", "", {}}}};
+  for (int row = 0; row < 1000; ++row) {
+    first.columns[0].cells.push_back(fmt::format("{}", std::sin(row)));
+    second.columns[0].cells.push_back(row == 500 ? "" : first.columns[0].cells.back());
+  }
+  const nlohmann::json tables = embedded(std::vector{first, second});
+  EXPECT_EQ(tables[0]["columns"][0]["form"], "number");
+  EXPECT_EQ(tables[1]["columns"][0]["form"], "difference");
+  EXPECT_EQ(tables[1]["columns"][0]["of"], (nlohmann::json{0, 0}));
+  EXPECT_LT(tables[1]["data"].get<std::string>().size(), tables[0]["data"].get<std::string>().size() / 20);
+}
+
+/// binary64 holds integers of up to 2^53 = 9.007e15: GPS times in ns are longer and stay text, as do words.
+TEST(EmbeddedTable, WhatBinary64DoesNotHoldStaysText) {
+  CellTable table{"a.csv", {{"time_gps_ns", "", {}}, {"word", "", {}}, {"value", "", {}}}};
+  for (int row = 0; row < 100; ++row) {
+    table.columns[0].cells.push_back(fmt::format("9355680150000000{:02}", row));
+    table.columns[1].cells.push_back(row % 2 == 0 ? "on" : "off");
+    table.columns[2].cells.push_back(row % 3 == 0 ? "nan" : "0.1");
+  }
+  for (const nlohmann::json tables = embedded(std::vector{table}); const auto& column : tables[0]["columns"])
+    EXPECT_EQ(column["form"], "text");
+}
+
+TEST(EmbeddedTable, TheLongestTableIsThinnedFirst) {
+  const CellTable longer = long_table(20000, 1, 2), shorter = long_table(300, 1, 2);
+  const nlohmann::json whole = embedded(std::vector{longer, shorter});
+  EXPECT_EQ(whole[0]["rows"], 20000);
+  const nlohmann::json thinned = embedded(std::vector{longer, shorter}, 20000);
+  EXPECT_LE(thinned[0]["data"].get<std::string>().size() + thinned[1]["data"].get<std::string>().size(), 20000u);
+  EXPECT_LT(thinned[0]["rows"], 10000);
+  EXPECT_EQ(thinned[1]["rows"], 300);
 }
 
 }  // namespace

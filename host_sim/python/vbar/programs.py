@@ -1,0 +1,18 @@
+"""The program vbar that belongs to this package."""
+import os
+import pathlib
+import shutil
+
+
+def program():
+    """$VBAR, the program beside this package, or the first one of PATH."""
+    if "VBAR" in os.environ:
+        return os.environ["VBAR"]
+    here = pathlib.Path(__file__).resolve().parent
+    for beside in (here.parents[1] / "vbar", here.parents[3] / "bin" / "vbar"):
+        if os.access(beside, os.X_OK) and beside.is_file():
+            return str(beside)
+    found = shutil.which("vbar")
+    if not found:
+        raise FileNotFoundError("the program vbar is neither beside this package nor in PATH, and VBAR does not name it")
+    return found
