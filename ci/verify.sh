@@ -10,6 +10,13 @@ ci/fuzz.sh 20
 ci/clean_root.sh test || (($? == 77))  # 77: cannot be made here
 ci/bundle.sh --check || (($? == 77))
 ci/bundle.sh --check13 || (($? == 77))
+# All programs by a unity build, as ci/run.sh builds without a compiler cache: it flies the bits of the other.
+unity=$(mktemp -d)
+cmake --preset host -B build/unity --log-level=WARNING -DVBAR_TESTS=OFF -DVBAR_UNITY=ON
+cmake --build build/unity
+build/host/vbar run ideal_navigation --out "$unity/run"
+build/unity/vbar replay "$unity/run"
+rm -r "$unity"
 # gnss-sdr behind the ports of a receiver; 120 s of two spacecraft through it and RTKLIB: double differences and the fixed baseline.
 gnss_sdr=(python3 tests/peers/gnss_sdr/check_gnss_sdr.py build/host/tests/peers/gnss_sdr/vbar_gnss_sdr_tool)
 "${gnss_sdr[@]}" receiver

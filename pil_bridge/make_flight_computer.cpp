@@ -199,8 +199,9 @@ std::string find_image(const FlightComputerOptions& options) {
       check_image(options.image, options.target);
       return options.image;
     }
-    throw FlightComputerError("flight_computer.image '" + options.image +
-                              "': there is no such file (vbar's own is built by the CMake preset '" + preset + "')");
+    const std::string found = fs::exists(options.image, error) ? "is a folder or a device" : "there is no such file";
+    throw FlightComputerError("flight_computer.image '" + options.image + "': " + found +
+                              " (vbar's own is built by the CMake preset '" + preset + "')");
   }
   std::string image = beside_program(installed, built);
   if (!fs::is_regular_file(image, error)) {

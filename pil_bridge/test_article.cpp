@@ -93,8 +93,11 @@ namespace {
 constexpr std::size_t kStateBytesMax = std::size_t{1} << 30;
 constexpr std::size_t kStateAlignmentMax = 4096;
 
-/// The article; throws FlightComputerError unless it asks for a state that there can be.
+/// The article; throws FlightComputerError unless it has a name and asks for a state that there can be.
 std::shared_ptr<const TestArticle> checked(std::shared_ptr<const TestArticle> article) {
+  if (article->name() == nullptr)
+    throw FlightComputerError(
+        "the flight software has no name (vbar_gnc_name returned a null pointer); accepted: a text");
   const std::size_t size = article->state_size(), alignment = article->state_alignment();
   const std::string name = "the flight software '" + std::string(article->name()) + "' asks for a state ";
   if (size > kStateBytesMax)

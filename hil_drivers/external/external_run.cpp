@@ -4,10 +4,13 @@
 #include <array>
 #include <filesystem>
 #include <stdexcept>
+#include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "hil_drivers/common/emulator_process.h"
 #include "hil_drivers/external/external_source.h"
@@ -127,17 +130,29 @@ class ExternalRun final : public testbeds::TestbedRun {
       : settings_(settings), mission_(context.mission), data_(context.data_directory) {}
 
   std::unique_ptr<twins::PacketSource> make_packets(const testbeds::PacketPlan& plan) override {
+    made_.push_back(plan.name);
     return std::make_unique<ExternalSource>(plan, static_cast<std::int64_t>(mission_.seed), numbers_of(mission_),
                                             connection_to(settings_, mission_, data_, plan.name, plan.spacecraft));
   }
 
-  void begin(report::RunRecord& /*record*/, const std::filesystem::path& /*folder*/) override {}
+  /// Throws std::runtime_error for a program of a source that the mission does not have: its name is misspelt, or its
+  /// sensor has another source, and the program would not be started.
+  void begin(report::RunRecord& /*record*/, const std::filesystem::path& /*folder*/) override {
+    for (const ProgramOfSource& one : settings_.sources) {
+      if (one.source == kTruth || std::ranges::find(made_, one.source) != made_.end()) continue;
+      throw std::runtime_error(
+          fmt::format("testbed.external.source: found the name \"{}\", which no sensor with source = \"external\" has; "
+                      "accepted: {}",
+                      one.source, fmt::join(made_, ", ")));
+    }
+  }
   void finish() noexcept override {}
 
  private:
   ExternalSettings settings_;
   const mission::Mission& mission_;
   std::filesystem::path data_;
+  std::vector<std::string> made_;  ///< names of the sources of this run
 };
 
 std::shared_ptr<testbeds::TestbedRun> open(const mission::TestbedSettings& settings,

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -11,6 +10,7 @@
 #include <fmt/format.h>
 #include <openssl/evp.h>
 
+#include "host_sim/files/output_file.h"
 #include "host_sim/files/text_lines.h"
 
 namespace vbar::files {
@@ -151,16 +151,13 @@ void note_file_read(const fs::path& file, std::string_view contents) {
 }
 
 DataStream::DataStream(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::error_code error;
-  std::string contents;
-  if (stream && !fs::is_directory(file, error)) contents.assign(std::istreambuf_iterator<char>(stream), {});
-  if (!stream || stream.bad() || fs::is_directory(file, error)) {
+  std::optional<std::string> contents = contents_of(file);
+  if (!contents) {
     setstate(std::ios::failbit);
     return;
   }
-  note_file_read(file, contents);
-  str(plain_text(std::move(contents), file.string()));
+  note_file_read(file, *contents);
+  str(plain_text(*std::move(contents), file.string()));
 }
 
 }  // namespace vbar::files

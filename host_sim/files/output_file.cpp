@@ -1,8 +1,8 @@
 #include "host_sim/files/output_file.h"
 
+#include <array>
 #include <cerrno>
 #include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -22,12 +22,22 @@ void remove_link(const std::filesystem::path& file) {
     throw std::runtime_error(file.string() + ": is a symbolic link that cannot be removed: " + error.message());
 }
 
+std::optional<std::string> contents_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string contents;
+  std::array<char, 1 << 16> block;
+  // An iterator over the stream's buffer would throw the library's own sentence where the disk fails.
+  while (stream.read(block.data(), block.size()) || stream.gcount() > 0)
+    contents.append(block.data(), static_cast<std::size_t>(stream.gcount()));
+  if (!stream.is_open() || stream.bad()) return std::nullopt;
+  return contents;
+}
+
 std::string read_text_file(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) throw std::runtime_error(file.string() + ": no such file");
-  std::ifstream stream(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream.is_open() || stream.bad()) throw std::runtime_error(file.string() + ": cannot be read");
-  return text;
+  std::optional<std::string> text = contents_of(file);
+  if (!text) throw std::runtime_error(file.string() + ": cannot be read");
+  return *std::move(text);
 }
 
 std::filesystem::path neighbour_of(const std::filesystem::path& file) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -21,6 +22,9 @@ namespace vbar::files {
 void remove_link(const std::filesystem::path& file);
 
 // Whole text files, for files that are either there as meant or not at all.
+
+/// Returns the bytes of a file; an empty value if it cannot be read, also where its disk fails halfway.
+[[nodiscard]] std::optional<std::string> contents_of(const std::filesystem::path& file);
 
 /// Throws std::runtime_error that names the file.
 [[nodiscard]] std::string read_text_file(const std::filesystem::path& file);

@@ -1,10 +1,11 @@
 #include "host_sim/mission/toml_file.h"
 
-#include <fstream>
-#include <iterator>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "host_sim/files/data_stream.h"
+#include "host_sim/files/output_file.h"
 #include "host_sim/mission/mission_error.h"
 
 namespace vbar::mission {
@@ -154,11 +155,9 @@ std::string read_text_file(const std::filesystem::path& file, const std::string&
   if (!std::filesystem::exists(status)) throw MissionError(file.string(), "", "no such file", kind);
   if (!std::filesystem::is_regular_file(status))
     throw MissionError(file.string(), "", "something that is not a file", kind);
-  std::ifstream stream(file, std::ios::binary);
-  // Not `<< stream.rdbuf()`, which fails for an empty file.
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream.is_open() || stream.bad()) throw MissionError(file.string(), "", "a file that cannot be read", kind);
-  return text;
+  std::optional<std::string> text = files::contents_of(file);
+  if (!text) throw MissionError(file.string(), "", "a file that cannot be read", kind);
+  return *std::move(text);
 }
 
 }  // namespace vbar::mission

@@ -242,10 +242,9 @@ void check_inclination(double inclination_rad, const std::string& spacecraft) {
   const double from_equator_deg = std::min(inclination_deg, 180.0 - inclination_deg);
   if (from_equator_deg >= kMinInclination_deg) return;
   throw std::runtime_error(fmt::format(
-      "spacecraft \"{}\": its mean inclination is {:.4f} deg; accepted: {} to {} deg, where the relative orbital "
+      "spacecraft \"{}\": its mean inclination is {:.6f} deg; accepted: {} to {} deg, where the relative orbital "
       "elements of this flight software are regular (its control error grows as 1 / sin i); flight_computer.library "
-      "may name "
-      "another one",
+      "may name another one",
       spacecraft, inclination_deg, kMinInclination_deg, 180.0 - kMinInclination_deg));
 }
 

@@ -43,7 +43,7 @@ target_compile_definitions(vbar_options INTERFACE EIGEN_MPL2_ONLY EIGEN_DONT_VEC
 target_compile_options(vbar_options INTERFACE
   "$<$<AND:$<COMPILE_LANGUAGE:CXX>,$<NOT:$<BOOL:$<TARGET_PROPERTY:VBAR_PRECOMPILED>>>>:SHELL:-include ${PROJECT_SOURCE_DIR}/fsw/core/eigen_assert.h>"
   -ffp-contract=off -fno-math-errno
-  -Wall -Wextra -Wpedantic -Wshadow -Wcast-align -Wformat=2 -Wimplicit-fallthrough -Werror
+  -Wall -Wextra -Wpedantic $<$<NOT:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wshadow> -Wcast-align -Wformat=2 -Wimplicit-fallthrough -Werror
   $<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual>)
 if(VBAR_SANITIZE)
   target_compile_options(vbar_options INTERFACE -fsanitize=${VBAR_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
@@ -67,6 +67,7 @@ if(VBAR_TARGET STREQUAL "host")
 endif()
 
 include(vbar_precompiled_headers)
+include(vbar_unity)
 
 # vbar_target_of(result folder): the target of a module is named after its folder: fsw/gnss is vbar_fsw_gnss. Other names stay.
 function(vbar_target_of result)
@@ -92,6 +93,7 @@ function(vbar_flight_library name)
   target_link_libraries(${name} PRIVATE vbar_flight_options PUBLIC ${depends})
   target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR})
   vbar_use_precompiled(${name} vbar_flight_precompiled)
+  vbar_unity(${name} ${ARG_SOURCES})
 endfunction()
 function(vbar_host_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
@@ -99,6 +101,7 @@ function(vbar_host_library name)
   add_library(${name} STATIC ${ARG_SOURCES})
   target_link_libraries(${name} PUBLIC vbar_host_options ${depends})
   vbar_use_precompiled(${name} vbar_host_precompiled)
+  vbar_unity(${name} ${ARG_SOURCES})
 endfunction()
 
 # vbar_module(folder [EXCEPT path...] [SOURCES source...] [DEPENDS name...]): the library of a folder (path from the top of

@@ -4,12 +4,13 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
-#include <iterator>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "hil_drivers/wire/bytes.h"
+#include "host_sim/files/output_file.h"
 #include "host_sim/mission/mission_error.h"
 
 namespace vbar::tron::xml {
@@ -162,9 +163,9 @@ constexpr std::size_t kMaxFileBytes = std::size_t{1} << 20;
 }  // namespace
 
 File::File(const std::filesystem::path& file, std::string_view root_name) : file_(file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw mission::MissionError(file.string(), "", "a file that cannot be read", "a readable file");
-  text_.assign(std::istreambuf_iterator<char>(stream), {});
+  std::optional<std::string> text = files::contents_of(file);
+  if (!text) throw mission::MissionError(file.string(), "", "a file that cannot be read", "a readable file");
+  text_ = *std::move(text);
   if (text_.size() > kMaxFileBytes)
     throw mission::MissionError(file.string(), "", fmt::format("{} bytes", text_.size()), "up to 1 MiB");
   const pugi::xml_parse_result result =

@@ -107,6 +107,10 @@ class FaultyArticle(unittest.TestCase):
                     self.assertEqual(result.returncode, 1, result.stderr)
                     self.assertIn(f"flight_computer.image '{image}': found ", result.stderr)
                     self.assertIn("accepted: an ELF executable for 32-bit ARM", result.stderr)
+            result = vbar("run", "ideal_navigation", "--force", "--out", folder / "run", *overrides(
+                "mission.duration_h=0.3", "flight_computer.target=zynq_qemu", f"flight_computer.image={folder}"))
+            self.assertEqual(result.returncode, 1, result.stderr)
+            self.assertIn(f"flight_computer.image '{folder}': is a folder or a device", result.stderr)
 
 
 class NewArticleBadInput(unittest.TestCase):

@@ -14,6 +14,7 @@ from vbar_program import (BINARY, SOURCE, ZYNQ_IMAGE, children_of, fly, is_runni
 MISSION = SOURCE / "missions" / "experiment1_hil.toml"
 BENCH = "vbar_os_bench {data}/benches/optical_stimulator.toml --directory {directory} --seed {seed}"
 CALIBRATE = BINARY / "vbar_os_calibrate"
+IMAGES = 60  # one a minute
 
 
 def command_of(pid):
@@ -24,7 +25,7 @@ def command_of(pid):
 
 
 class Experiment1Hil(unittest.TestCase):
-    """One calibrated bench, and the first two hours of the mission."""
+    """One calibrated bench, and the first hour of the mission."""
 
     @classmethod
     def setUpClass(cls):
@@ -38,18 +39,18 @@ class Experiment1Hil(unittest.TestCase):
             raise AssertionError(f"vbar_os_calibrate failed: {made.stdout}{made.stderr}")
         cls.settings = (f'testbed.optical_stimulator.calibration="{cls.calibration}"',)
         cls.run_folder = cls.folder / "run"
-        cls.summary = fly(cls.run_folder, "mission.duration_h=2", *cls.settings, mission=MISSION, timeout=500)
+        cls.summary = fly(cls.run_folder, "mission.duration_h=1", *cls.settings, mission=MISSION, timeout=500)
 
     def test_every_image_is_one_of_the_bench(self):
         bench = self.summary["optical_stimulator"]
         self.assertEqual(bench["bench"], "emulated")
-        self.assertEqual(bench["images"], 120)
+        self.assertEqual(bench["images"], IMAGES)
         with (self.run_folder / "bench.csv").open() as file:
-            self.assertEqual(len(list(csv.DictReader(file))), 120)
+            self.assertEqual(len(list(csv.DictReader(file))), IMAGES)
 
     def test_stars_and_target_are_found(self):
         images = self.summary["sensor_figures"]["images"]
-        self.assertGreaterEqual(images["with_stars"], 119)
+        self.assertGreaterEqual(images["with_stars"], IMAGES - 1)
         self.assertLess(self.summary["star_attitude_error_arcsec"]["mean"], 2.0)
 
     def test_calibration_reaches_its_goal(self):
@@ -72,7 +73,7 @@ class Experiment1Hil(unittest.TestCase):
 
     def test_log_of_the_whole_mission_would_be_below_400_megabytes(self):
         log = self.run_folder / "packets.lcmlog"
-        self.assertLess(log.stat().st_size / 2.0 * 36.0, 0.4e9)
+        self.assertLess(log.stat().st_size * 36.0, 0.4e9)
 
     def test_missing_calibration_names_the_program_that_makes_it(self):
         result = vbar("run", MISSION, "--out", self.folder / "none",

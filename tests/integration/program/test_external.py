@@ -249,6 +249,14 @@ class External(Programs):
             self.assertEqual(result.returncode, 2, result.stderr)
             self.assertIn(fault, result.stderr)
 
+    def test_a_program_of_a_source_that_the_mission_does_not_have(self):
+        program = f'program = "{sys.executable} {self.folder}/unused.py"'
+        mission = self.mission(f'{program}\n[[testbed.external.source]]\nname = "servicer/lidr"\n{program}')
+        result = vbar("run", mission, "--quiet", "--force", "--out", self.folder / "run")
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertIn('testbed.external.source: found the name "servicer/lidr", which no sensor with source = "external" has; accepted: '
+                      'servicer/lidar', result.stderr)
+
     def test_programs_that_are_missing(self):
         for program, fault in (('program = "no_such_program"', "no_such_program"),
                                ('[[testbed.external.source]]\nname = "servicer/radar"\nprogram = "x"\n[testbed.grand]',

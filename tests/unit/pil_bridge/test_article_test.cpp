@@ -87,6 +87,13 @@ TEST(LibraryInChild, LoadingSaysWhatIsWrong) {
               testing::ThrowsMessage<FlightComputerError>(HasSubstr("cannot be loaded")));
 }
 
+TEST(LinkedArticle, WithoutANameIsRefused) {
+  TestArticle nameless = *vbar::pil::linked_test_article();
+  nameless.name = []() -> const char* { return nullptr; };
+  EXPECT_THAT([&] { (void)make_in_process(std::make_shared<const TestArticle>(nameless), 1); },
+              testing::ThrowsMessage<FlightComputerError>(HasSubstr("vbar_gnc_name returned a null pointer")));
+}
+
 // The numbers are those of article_with_faults.c.
 TEST(LibraryInChild, AFaultIsOneSentenceAndTheProgramGoesOn) {
   const std::string library = kLibraries + "libvbar_article_with_faults.so";

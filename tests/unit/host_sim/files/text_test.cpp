@@ -1,6 +1,8 @@
 // Files as they are distributed: the compressed bytes were written by gzip 1.12 and Python's gzip module.
 
 #include <fstream>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -8,6 +10,7 @@
 #include <unistd.h>
 
 #include "host_sim/files/data_stream.h"
+#include "host_sim/files/output_file.h"
 #include "host_sim/files/text_lines.h"
 
 namespace vbar::files {
@@ -154,6 +157,17 @@ TEST(TextLines, MessagesHoldNoControlCharacters) {
   EXPECT_EQ(printable(std::string_view("\0x", 2)), "?x");
   EXPECT_THAT([] { first_line_of("a\n").refuse("norm \x1b[31m", "another"); },
               ThrowsMessage<FormatError>("f.txt:1: found norm ?[31m, expected another"));
+}
+
+// A file of the system whose first byte cannot be read, as on a disk that fails.
+TEST(ContentsOf, AFileThatFailsHalfwayHasNone) {
+  EXPECT_EQ(contents_of("/proc/self/mem"), std::nullopt);
+  EXPECT_EQ(contents_of("/tmp"), std::nullopt);
+  EXPECT_EQ(contents_of("/no/such"), std::nullopt);
+  EXPECT_EQ(contents_of("/dev/null"), "");
+  EXPECT_FALSE(DataStream("/proc/self/mem"));
+  EXPECT_THAT([] { (void)read_text_file("/proc/self/mem"); },
+              ThrowsMessage<std::runtime_error>("/proc/self/mem: cannot be read"));
 }
 
 }  // namespace

@@ -1,0 +1,63 @@
+# Unity builds (VBAR_UNITY=ON) for cold builds, where no compiler cache has the objects: the sources of a folder are compiled
+# together, so that the headers and templates that several of them use are read and instantiated once. An edit then
+# compiles a whole folder, so that it is off by default.
+option(VBAR_UNITY "compile the sources of a folder together: half the time for a cold build, more for an edit" OFF)
+
+# Sources of one unit at most, so that both processors of a small computer have work and neither runs out of memory.
+set(VBAR_UNITY_FILES_MAX 10)
+
+# vbar_has_common(result list list): whether two lists (by their names) have a common element.
+function(vbar_has_common result one other)
+  set(${result} FALSE PARENT_SCOPE)
+  foreach(element IN LISTS ${one})
+    if(element IN_LIST ${other})
+      set(${result} TRUE PARENT_SCOPE)
+      return()
+    endif()
+  endforeach()
+endfunction()
+
+# vbar_unity(name source...): groups the sources of a target by folder. The anonymous namespaces of one unit are one, so that
+# two files that declare the same function, constant or type at the margin, where those of namespaces stand, or of which
+# one declares what the other takes from another namespace, are placed in different units. CMake compiles a source
+# with options or definitions of its own alone. A unity build does not warn of names that hide those of other files (-Wshadow).
+function(vbar_unity name)
+  if(NOT VBAR_UNITY)
+    return()
+  endif()
+  set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  # A class that a source declares for itself may have members of its anonymous namespace.
+  target_compile_options(${name} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-subobject-linkage>)
+  foreach(source IN LISTS ARGN)
+    get_filename_component(source ${source} ABSOLUTE)
+    if(NOT source MATCHES "\\.cpp$" OR NOT EXISTS ${source})
+      continue()
+    endif()
+    file(READ ${source} text)
+    string(REGEX REPLACE "\n\\[\\[[a-z_]+\\]\\] " "\n" text "\n${text}")
+    string(REGEX REPLACE "[];[]" " " text "${text}")
+    string(REGEX MATCHALL "\n[A-Za-z][A-Za-z0-9_:<>,&* ]* [*&]*[A-Za-z0-9_]+ *[=({]" declared "${text}")
+    list(FILTER declared EXCLUDE REGEX "^\nnamespace")
+    list(TRANSFORM declared REPLACE "^.*[ *&]([A-Za-z0-9_]+) *[=({]$" "\\1")
+    string(REGEX MATCHALL "\nusing [A-Za-z0-9_:]+::[A-Za-z0-9_]+ " taken "${text}")
+    list(TRANSFORM taken REPLACE "^.*::([A-Za-z0-9_]+) $" "\\1")
+    get_filename_component(folder ${source} DIRECTORY)
+    string(MD5 folder ${folder})
+    set(number 0)
+    while(TRUE)
+      set(unit ${folder}_${number})
+      vbar_has_common(declared_twice declared declared_${unit})
+      vbar_has_common(taken_there declared taken_${unit})
+      vbar_has_common(taken_here taken declared_${unit})
+      list(LENGTH sources_${unit} files)
+      if(files LESS VBAR_UNITY_FILES_MAX AND NOT (declared_twice OR taken_there OR taken_here))
+        break()
+      endif()
+      math(EXPR number "${number} + 1")
+    endwhile()
+    list(APPEND declared_${unit} ${declared})
+    list(APPEND taken_${unit} ${taken})
+    list(APPEND sources_${unit} ${source})
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${unit})
+  endforeach()
+endfunction()
