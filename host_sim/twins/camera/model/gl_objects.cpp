@@ -29,9 +29,14 @@ namespace vbar::twins::camera {
 
 using namespace opengl;
 
-GlContext::GlContext() {
+void GlContext::prepare() {
   static std::once_flag once;
   std::call_once(once, [] { setenv("MESA_SHADER_CACHE_DISABLE", "true", 0); });
+  static_cast<void>(gl());
+}
+
+GlContext::GlContext() {
+  prepare();
   constexpr std::array<int, 15> kAttributes{OSMESA_FORMAT,
                                             OSMESA_RGBA,
                                             OSMESA_DEPTH_BITS,

@@ -13,9 +13,12 @@ namespace vbar::twins::camera {
 /// One OpenGL 3.3 core context. It belongs to no thread: the caller makes it current while rendering.
 class GlContext {
  public:
-  /// Throws std::runtime_error if there is no such context. The first one keeps Mesa from writing a shader cache into
-  /// the home folder, unless MESA_SHADER_CACHE_DISABLE is set to something else: it sets that environment variable, so
-  /// create the first one before other threads start.
+  /// Loads Mesa, and keeps it from writing a shader cache into the home folder, unless MESA_SHADER_CACHE_DISABLE is set
+  /// to something else: it sets that environment variable, so call it before other threads start. Throws
+  /// std::runtime_error if the library is missing.
+  static void prepare();
+
+  /// Prepares, and makes a context. Throws std::runtime_error if there is no such context.
   GlContext();
   ~GlContext();
   GlContext(const GlContext&) = delete;

@@ -14,6 +14,7 @@
 #include <Eigen/Geometry>
 
 #include "host_sim/twins/camera/earth_disc.h"
+#include "host_sim/twins/camera/model/distant_body.h"
 #include "host_sim/twins/camera/model/gl_objects.h"
 #include "host_sim/twins/camera/model/target_shaders.h"
 
@@ -74,21 +75,16 @@ int shadow_size_for(int texels) {
   return std::max(4 * texels, 512);
 }
 
-// From the middle of the sphere, in radii.
-std::vector<float> surface_of(const CadModel& model) {
+std::vector<float> surface_of(std::span<const Face> faces) {
   std::vector<float> floats;
-  const auto add = [&floats](const Vector3& v) {
-    for (int i = 0; i < 3; ++i) floats.push_back(static_cast<float>(v[i]));
-  };
-  for (const Triangle& t : model.triangles) {
-    const Vector3 flat = (t.corners[1] - t.corners[0]).cross(t.corners[2] - t.corners[0]).normalized();
+  const auto add = [&floats](const glsl::vec3& v) { floats.insert(floats.end(), {v.x, v.y, v.z}); };
+  for (const Face& face : faces)
     for (std::size_t k = 0; k < 3; ++k) {
-      add((t.corners[k] - model.centre) / model.radius_m);
-      add(t.normals[k]);
-      add(flat);
-      floats.push_back(static_cast<float>(t.material));
+      add(face.corners[k]);
+      add(face.normals[k]);
+      add(face.flat_normal);
+      floats.push_back(static_cast<float>(face.material));
     }
-  }
   return floats;
 }
 
@@ -120,17 +116,24 @@ void check(const TargetView& view) {
 
 }  // namespace
 
-struct TargetRenderer::Drawing {
-  explicit Drawing(const CadModel& model) : centre(model.centre), radius_m(model.radius_m) {
+double earth_edge(const TargetView& view) {
+  return std::clamp(view.earth_half_angle, 1e-3, 0.5 * kPi);
+}
+
+namespace {
+
+/// What is drawn with OpenGL.
+struct Pictures {
+  explicit Pictures(std::span<const Face> faces) {
     const GlContext::Current current(context);
     shadow_program.emplace(kShadowVertexShader, kShadowFragmentShader);
     surface_program.emplace(
         kSurfaceVertexShader,
         std::string(kSurfaceFragmentInputs).append(kReflectionFunctions).append(kSurfaceFragmentMain));
-    triangles.emplace(surface_of(model), std::array{3, 3, 4});
+    triangles.emplace(surface_of(faces), std::array{3, 3, 4});
     earth_light.emplace();
   }
-  ~Drawing() {
+  ~Pictures() {
     const GlContext::Current current(context);
     pictures.clear();
     shadow_maps.clear();
@@ -139,16 +142,16 @@ struct TargetRenderer::Drawing {
     surface_program.reset();
     shadow_program.reset();
   }
-  Drawing(const Drawing&) = delete;
-  Drawing& operator=(const Drawing&) = delete;
+  Pictures(const Pictures&) = delete;
+  Pictures& operator=(const Pictures&) = delete;
 
+  /// Draws a picture of `size` texels a side.
+  void draw(const TargetView& view, const PictureGeometry& geometry, std::span<const std::array<float, 4>> materials,
+            std::span<const float> earth_table, int size);
   void draw_shadow(const Matrix3& R_sun_body) const;
-  void draw_surface(const TargetView& view, const Vector3& centre_camera, const Matrix3& R_picture_camera,
-                    double tan_half, const Matrix3& R_sun_body, double scale);
+  void draw_surface(const TargetView& view, const PictureGeometry& geometry,
+                    std::span<const std::array<float, 4>> materials);
 
-  Vector3 centre;
-  double radius_m;
-  std::vector<std::array<float, 4>> materials;
   GlContext context;
   std::optional<GlProgram> shadow_program, surface_program;
   std::optional<GlTriangles> triangles;
@@ -156,12 +159,11 @@ struct TargetRenderer::Drawing {
   SizedBuffers<GlPicture> pictures;
   GlShadowMap* shadow_map = nullptr;  // shadow map of this image
   GlPicture* picture = nullptr;
-  std::optional<GlTable> earth_light;  // for the Earth's half-angle whose sine is:
-  double earth_table_sine = -1.0;
+  std::optional<GlTable> earth_light;
   std::vector<float> texels;
 };
 
-void TargetRenderer::Drawing::draw_shadow(const Matrix3& R_sun_body) const {
+void Pictures::draw_shadow(const Matrix3& R_sun_body) const {
   shadow_map->bind_and_clear();
   gl().glEnable(GL_DEPTH_TEST);
   shadow_program->use();
@@ -170,15 +172,15 @@ void TargetRenderer::Drawing::draw_shadow(const Matrix3& R_sun_body) const {
   triangles->draw();
 }
 
-void TargetRenderer::Drawing::draw_surface(const TargetView& view, const Vector3& centre_camera,
-                                           const Matrix3& R_picture_camera, double tan_half, const Matrix3& R_sun_body,
-                                           double scale) {
+void Pictures::draw_surface(const TargetView& view, const PictureGeometry& geometry,
+                            std::span<const std::array<float, 4>> materials) {
   // From body axes in radii to clip space. Everything is relative to the distance of the middle, so single precision
   // is enough at any range; depth runs from -1 to 1 through the sphere.
-  const double reach = radius_m / centre_camera.norm();
-  const Matrix3 R_picture_body = R_picture_camera * view.R_camera_body;
+  const double reach = geometry.reach;
+  const Matrix3& R_sun_body = geometry.R_sun_body;
+  const Matrix3 R_picture_body = geometry.R_picture_camera * view.R_camera_body;
   Eigen::Matrix<double, 4, 4> clip_from_body = Eigen::Matrix<double, 4, 4>::Zero();
-  clip_from_body.topLeftCorner<2, 3>() = reach / tan_half * R_picture_body.topRows<2>();
+  clip_from_body.topLeftCorner<2, 3>() = reach / geometry.tan_half * R_picture_body.topRows<2>();
   clip_from_body.block<1, 3>(2, 0) = R_picture_body.row(2);
   clip_from_body(2, 3) = reach;
   clip_from_body.block<1, 3>(3, 0) = reach * R_picture_body.row(2);
@@ -199,18 +201,14 @@ void TargetRenderer::Drawing::draw_surface(const TargetView& view, const Vector3
   gl().glUniformMatrix3fv(surface_program->uniform("R_sun_body"), 1, GL_FALSE, sun_rotation.data());
   gl().glUniform4fv(surface_program->uniform("materials"), static_cast<GLsizei>(materials.size()), materials[0].data());
   gl().glUniform1i(surface_program->uniform("shadow_map"), 0);
-  set_vector("camera", -view.R_camera_body.transpose() * centre_camera / radius_m);
+  set_vector("camera", -view.R_camera_body.transpose() * geometry.centre_camera / geometry.radius_m);
   set_vector("sun", -R_sun_body.row(2).transpose());
   set_vector("nadir", view.R_camera_body.transpose() * view.nadir_camera.normalized());
-  set_number("sun_irradiance", view.sunlit * view.sun_photons_per_m2_s / scale);
-  set_number("earth_irradiance", view.earth_photons_per_m2_s / scale);
-  const double earth_edge = std::clamp(view.earth_half_angle, 1e-3, 0.5 * kPi), sine_earth = std::sin(earth_edge);
-  set_number("earth_edge", earth_edge);
+  set_number("sun_irradiance", view.sunlit * view.sun_photons_per_m2_s / geometry.scale);
+  set_number("earth_irradiance", view.earth_photons_per_m2_s / geometry.scale);
+  const double sine_earth = std::sin(earth_edge(view));
+  set_number("earth_edge", earth_edge(view));
   set_number("earth_radiance", 1.0 / (kPi * sine_earth * sine_earth));
-  if (sine_earth != earth_table_sine) {
-    earth_light->set(earth_table(sine_earth));
-    earth_table_sine = sine_earth;
-  }
   gl().glUniform1i(surface_program->uniform("shadow_reach"), picture->size() < shadow_map->size() ? 0 : 1);
   gl().glUniform1i(surface_program->uniform("earth_light"), 1);
   shadow_map->bind_texture();
@@ -218,7 +216,36 @@ void TargetRenderer::Drawing::draw_surface(const TargetView& view, const Vector3
   triangles->draw();
 }
 
+void Pictures::draw(const TargetView& view, const PictureGeometry& geometry,
+                    std::span<const std::array<float, 4>> materials, std::span<const float> earth_table, int size) {
+  const GlContext::Current current(context);
+  picture = &pictures.of_size(size, size > kFinePicture ? 1 : 4);
+  shadow_map = &shadow_maps.of_size(shadow_size_for(size));
+  earth_light->set(earth_table);
+  draw_shadow(geometry.R_sun_body);
+  draw_surface(view, geometry, materials);
+  picture->read(texels);
+}
+
+}  // namespace
+
+struct TargetRenderer::Drawing {
+  explicit Drawing(const CadModel& model)
+      : centre(model.centre), radius_m(model.radius_m), faces(faces_of(model)), distant(faces) {}
+
+  Vector3 centre;
+  double radius_m;
+  std::vector<std::array<float, 4>> materials;
+  std::vector<Face> faces;
+  DistantBody distant;
+  std::optional<Pictures> pictures;  // from the first picture on
+  std::vector<float> earth_light;    // for the Earth's half-angle whose sine is:
+  double earth_table_sine = -1.0;
+  int texels = 0;
+};
+
 TargetRenderer::TargetRenderer(const CadModel& model) : drawing_(std::make_unique<Drawing>(model)) {
+  GlContext::prepare();
   set_materials(model.materials);
 }
 
@@ -234,7 +261,7 @@ void TargetRenderer::set_materials(std::span<const Material> materials) {
 }
 
 int TargetRenderer::texels() const {
-  return drawing_->picture ? drawing_->picture->size() : 0;
+  return drawing_->texels;
 }
 
 void TargetRenderer::render(const TargetView& view, std::vector<LightSample>& out) {
@@ -248,31 +275,40 @@ void TargetRenderer::render(const TargetView& view, std::vector<LightSample>& ou
                                 " m in radius");
   const double scale = std::max(view.sunlit * view.sun_photons_per_m2_s, view.earth_photons_per_m2_s);
   if (scale <= 0.0) return;
-  const double sin_half = d.radius_m / distance;
-  const double tan_half = 1.002 * sin_half / std::sqrt(1.0 - sin_half * sin_half);  // a margin for single precision
-  const Matrix3 R_picture_camera = axes_towards(centre_camera / distance);
-  const Matrix3 R_sun_body = axes_towards(-view.sun_camera.normalized()) * view.R_camera_body;
-  const int n = texels_for(view.texel_pitch > 0.0 ? 2.0 * tan_half / view.texel_pitch : 0.0);
-
-  {
-    const GlContext::Current current(d.context);
-    d.picture = &d.pictures.of_size(n, n > kFinePicture ? 1 : 4);
-    d.shadow_map = &d.shadow_maps.of_size(shadow_size_for(n));
-    d.draw_shadow(R_sun_body);
-    d.draw_surface(view, centre_camera, R_picture_camera, tan_half, R_sun_body, scale);
-    d.picture->read(d.texels);
+  PictureGeometry geometry;
+  geometry.centre_camera = centre_camera;
+  geometry.radius_m = d.radius_m;
+  geometry.reach = d.radius_m / distance;
+  geometry.tan_half =
+      1.002 * geometry.reach / std::sqrt(1.0 - geometry.reach * geometry.reach);  // a margin for single precision
+  geometry.R_picture_camera = axes_towards(centre_camera / distance);
+  geometry.R_sun_body = axes_towards(-view.sun_camera.normalized()) * view.R_camera_body;
+  geometry.scale = scale;
+  const double sine_earth = std::sin(earth_edge(view));
+  if (sine_earth != d.earth_table_sine) {
+    d.earth_light = earth_table(sine_earth);
+    d.earth_table_sine = sine_earth;
   }
+  const double wanted = view.texel_pitch > 0.0 ? 2.0 * geometry.tan_half / view.texel_pitch : 0.0;
+  if (wanted <= DistantBody::kSamples) {
+    d.texels = DistantBody::kTexels;
+    d.distant.draw(view, geometry, d.materials, d.earth_light, out);
+    return;
+  }
+  const int n = d.texels = texels_for(wanted);
+  if (!d.pictures) d.pictures.emplace(d.faces);
+  d.pictures->draw(view, geometry, d.materials, d.earth_light, n);
 
   // A texel's solid angle: its area on the plane at unit distance times the cube of the cosine of the angle to the
   // axis.
-  const Matrix3 R_camera_picture = R_picture_camera.transpose();
-  const double pitch = 2.0 * tan_half / n;
+  const Matrix3 R_camera_picture = geometry.R_picture_camera.transpose();
+  const double pitch = 2.0 * geometry.tan_half / n;
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
       const double radiance = static_cast<double>(
-          d.texels[static_cast<std::size_t>(j) * static_cast<std::size_t>(n) + static_cast<std::size_t>(i)]);
+          d.pictures->texels[static_cast<std::size_t>(j) * static_cast<std::size_t>(n) + static_cast<std::size_t>(i)]);
       if (!(radiance > 0.0)) continue;
-      const Vector3 at((i + 0.5) * pitch - tan_half, (j + 0.5) * pitch - tan_half, 1.0);
+      const Vector3 at((i + 0.5) * pitch - geometry.tan_half, (j + 0.5) * pitch - geometry.tan_half, 1.0);
       const double length = at.norm();
       out.push_back({R_camera_picture * (at / length), scale * radiance * pitch * pitch / (length * length * length)});
     }

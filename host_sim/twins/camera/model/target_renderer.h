@@ -39,9 +39,14 @@ struct TargetView {
   double texel_pitch = 0.0;                           ///< largest wanted, rad; 0 for the coarsest picture
 };
 
+/// Half-angle of the Earth's disc that a renderer accounts for, rad.
+[[nodiscard]] double earth_edge(const TargetView& view);
+
+/// A body that the wanted texels divide into few samples is drawn without OpenGL (distant_body.h), a larger one with
+/// it.
 class TargetRenderer {
  public:
-  static constexpr int kMinTexels = 128;   ///< on a side of the picture
+  static constexpr int kMinTexels = 128;   ///< on a side of a picture drawn with OpenGL
   static constexpr int kMaxTexels = 2048;  ///< larger bodies get larger texels than asked for
 
   /// Copies the parts of the model that it needs. Throws std::runtime_error if there is no OpenGL.
@@ -50,10 +55,10 @@ class TargetRenderer {
   TargetRenderer(const TargetRenderer&) = delete;
   TargetRenderer& operator=(const TargetRenderer&) = delete;
 
-  /// Replaces `out` by the light of every texel that is not dark, in rows of the picture. Self-shadowing in sunlight is
-  /// modelled; interreflection, and the body's shadow in the Earth's light, are not. Same bits for
-  /// the same view on the same processor. From any thread, one at a time. Throws std::invalid_argument if a number is
-  /// not finite or the camera is inside the sphere around the body.
+  /// Replaces `out` by the light of every texel or square of texels that is not dark, in rows of the picture.
+  /// Self-shadowing in sunlight is modelled; interreflection, and the body's shadow in the Earth's light, are not. Same
+  /// bits for the same view on the same processor. From any thread, one at a time. Throws std::invalid_argument if a
+  /// number is not finite or the camera is inside the sphere around the body.
   void render(const TargetView& view, std::vector<LightSample>& out);
 
   /// Sets other materials for the faces, as many as the model has. Throws std::runtime_error as check_materials does.

@@ -39,45 +39,8 @@ void main() {
 }
 )glsl";
 
-// Reflection: Lambert plus Cook and Torrance (1982), "A reflectance model for computer graphics", with the distribution
-// and masking of Walter, Marschner, Li, Torrance (2007), "Microfacet models for refraction through rough surfaces"
-// (GGX, eqs. 33 and 34) and Schlick's (1994) Fresnel term. Light that the surface reflects specularly at grazing angles
-// is not scattered: the Lambert part falls as the Fresnel term rises, in both directions, so that reciprocity holds.
-inline constexpr std::string_view kReflectionFunctions = R"glsl(
-const float kPi = 3.14159265358979;
-
-float grazing(float cosine) {
-  float c = clamp(1.0 - cosine, 0.0, 1.0), c2 = c * c;
-  return c2 * c2 * c;
-}
-
-// Smith's masking of one direction, GGX.
-float masking(float cosine, float alpha2) {
-  return 2.0 * cosine / (cosine + sqrt(alpha2 + (1.0 - alpha2) * cosine * cosine));
-}
-
-// Reflected radiance per irradiance on an area that faces the light, from direction l to direction v: the reflection
-// function times the cosine of incidence.
-float reflected(vec3 n, vec3 l, vec3 v, vec4 m) {
-  float nl = dot(n, l), nv = max(dot(n, v), 1e-4);
-  if (nl <= 0.0) return 0.0;
-  float lambert = m.x / kPi * (1.0 - m.z * grazing(nl)) * (1.0 - m.z * grazing(nv));
-  vec3 h = normalize(l + v);
-  float alpha2 = m.w * m.w;
-  float nh = dot(n, h);
-  float d = nh * nh * (alpha2 - 1.0) + 1.0;
-  float distribution = alpha2 / (kPi * d * d);
-  float fresnel = m.y + (m.z - m.y) * grazing(dot(v, h));
-  float glossy = fresnel * distribution * masking(nl, alpha2) * masking(nv, alpha2) / (4.0 * nl * nv);
-  return (lambert + glossy) * nl;
-}
-)glsl";
-
-// Light reflected towards the camera, 1/sr times irradiance. Followed by kReflectionFunctions and
+// Light reflected towards the camera, 1/sr times irradiance. Followed by kReflectionFunctions (reflection.h) and
 // kSurfaceFragmentMain.
-//
-// The Earth is a disc of even radiance: its light scattered by the Lambert part, horizon included, and its mirror
-// image, as much of the lobe about the mirrored view as falls on the disc.
 inline constexpr std::string_view kSurfaceFragmentInputs = R"glsl(#version 330 core
 centroid in vec3 p;
 centroid in vec3 smooth_normal;
@@ -124,14 +87,10 @@ float sunlight(vec3 flat_normal) {
   return sum / float((2 * r + 1) * (2 * r + 1));
 }
 
-float earthshine(vec3 n, vec3 v, vec4 m) {
-  float nv = max(dot(n, v), 1e-4);
+float scattered_earth(vec3 n) {
   float size = float(textureSize(earth_light, 0));
   float place = (0.5 + (size - 1.0) * (0.5 + 0.5 * dot(n, nadir))) / size;
-  float lambert = m.x / kPi * (1.0 - m.z * grazing(nv)) * texture(earth_light, place).r;
-  float covered = smoothstep(mirror_edge.x, mirror_edge.y, dot(reflect(-v, n), nadir));
-  float fresnel = m.y + (m.z - m.y) * grazing(nv);
-  return lambert + fresnel * covered * earth_radiance;
+  return texture(earth_light, place).r;
 }
 
 void main() {
@@ -144,7 +103,7 @@ void main() {
   radiance = 0.0;
   if (sun_irradiance > 0.0 && dot(flat_normal, sun) > 0.0)
     radiance += sun_irradiance * reflected(n, sun, v, m) * sunlight(flat_normal);
-  if (earth_irradiance > 0.0) radiance += earth_irradiance * earthshine(n, v, m);
+  if (earth_irradiance > 0.0) radiance += earth_irradiance * earthshine(n, v, m, mirror_edge, nadir, scattered_earth(n), earth_radiance);
 }
 )glsl";
 
