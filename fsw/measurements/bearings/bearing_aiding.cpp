@@ -17,6 +17,10 @@ constexpr double square(double x) {
   return x * x;
 }
 
+target_tracking::BrightnessOffsets offsets_of(const filter::Estimate& estimate) {
+  return {.to_sun_m = estimate.mean(kAt<BrightnessOffset>), .to_earth_m = estimate.mean(kAt<EarthlightOffset>)};
+}
+
 }  // namespace
 
 Status bearing_rows(const filter::RelativeNavigationFilter& filter, const target_tracking::BearingMeasurement& bearing,
@@ -38,17 +42,20 @@ Status bearing_rows(const filter::RelativeNavigationFilter& filter, const target
   for (std::size_t k = 0; k < Transform::kPoints; ++k) {
     const auto target = orbit::target_from_roe(chief.value(), transform.point(k));
     if (!target.ok()) return target.status();
-    const Vector3 sight = target_tracking::centre_of_brightness(target.value().position_eci, camera, sun_eci,
-                                                                estimate.mean(kAt<BrightnessOffset>)) -
-                          camera;
+    const Vector3 sight =
+        target_tracking::centre_of_brightness(target.value().position_eci, camera, sun_eci, offsets_of(estimate)) -
+        camera;
     const double range = math::sqrt(sight.squaredNorm());
     values[k] = axes.topRows<2>() * sight / range;
     if (k > 0) continue;
     growth = target_tracking::centroid_scatter_growth(target_tracking::cos_phase_of(sight, sun_eci));
     centroid_noise = growth * model.centroid_noise_m / range;
     const Vector2 along_sun = axes.topRows<2>() * target_tracking::brightness_displacement(sight, sun_eci) / range;
+    const Vector2 to_earth =
+        axes.topRows<2>() * target_tracking::earthlight_displacement(sight, target.value().position_eci) / range;
     for (int axis = 0; axis < 2; ++axis) {
       batch.sensitivity(kAt<BrightnessOffset>, axis) = along_sun(axis);
+      batch.sensitivity(kAt<EarthlightOffset>, axis) = to_earth(axis);
       batch.sensitivity(kAt<CentroidWander> + axis, axis) = growth / range;
       batch.sensitivity(kAt<BearingBias> + axis, axis) = 1.0;
     }
@@ -126,25 +133,32 @@ void BearingAiding::follow_burns(const filter::RelativeNavigationFilter& filter)
   burns_until_ = filter.epoch();
 }
 
+namespace {
+
+/// Calls apply<Block>() for the blocks of the target's centroid.
+template <class Apply>
+void for_each_block_of_centroid(Apply&& apply) {
+  apply.template operator()<BrightnessOffset>();
+  apply.template operator()<EarthlightOffset>();
+  apply.template operator()<CentroidWander>();
+}
+
+}  // namespace
+
 void BearingAiding::activate_blocks(filter::RelativeNavigationFilter& filter) const {
   filter::Estimate& estimate = filter.estimate();
   const auto& processes = filter.settings().processes;
-  if (!filter::is_active<BrightnessOffset>(estimate)) {
-    filter::initialize_block<BrightnessOffset>(estimate, processes.of<BrightnessOffset>());
-  }
-  if (!filter::is_active<CentroidWander>(estimate)) {
-    filter::initialize_block<CentroidWander>(estimate, processes.of<CentroidWander>());
-  }
-  if (!filter::is_active<BearingBias>(estimate)) {
-    filter::initialize_block<BearingBias>(estimate, processes.of<BearingBias>());
-  }
+  const auto activate = [&]<class Block>() {
+    if (!filter::is_active<Block>(estimate)) filter::initialize_block<Block>(estimate, processes.of<Block>());
+  };
+  for_each_block_of_centroid(activate);
+  activate.template operator()<BearingBias>();
 }
 
 void BearingAiding::deactivate_blocks(filter::RelativeNavigationFilter& filter) const {
-  filter::Estimate& estimate = filter.estimate();
-  filter::deactivate_block<BrightnessOffset>(estimate);
-  filter::deactivate_block<CentroidWander>(estimate);
-  filter::deactivate_block<BearingBias>(estimate);
+  const auto deactivate = [&]<class Block>() { filter::deactivate_block<Block>(filter.estimate()); };
+  for_each_block_of_centroid(deactivate);
+  deactivate.template operator()<BearingBias>();
 }
 
 void BearingAiding::stop(GpsTime now, filter::RelativeNavigationFilter& filter) {
@@ -206,19 +220,43 @@ BearingModel BearingAiding::model_now() const {
   return model;
 }
 
-BearingEditStatus BearingAiding::process_measurement(const target_tracking::BearingMeasurement& bearing,
-                                                     const Vector3& sun_eci, filter::RelativeNavigationFilter& filter) {
-  if (batch_.size() > 0 && bearing.time - batch_.last_time() > kSilence) close_window();
-  if (!filter.is_precisely_determined()) centroid_scale_ = 1.0;
+/// Rows and innovations of a bearing, into the workspace of the filter.
+Status BearingAiding::predict(const target_tracking::BearingMeasurement& bearing, const Vector3& sun_eci,
+                              filter::RelativeNavigationFilter& filter) {
   filter.adaptation<CentroidWander>().variance_factor = centroid_scale_;
   filter::MeasurementBatch& batch = filter.workspace();
-  if (bearing_rows(filter, bearing, sun_eci, model_now(), batch) != Status::kOk) return BearingEditStatus::kRejected;
-  last_bearing_ = bearing;
-  last_sun_eci_ = sun_eci;
+  if (const Status status = bearing_rows(filter, bearing, sun_eci, model_now(), batch); status != Status::kOk)
+    return status;
   estimation::predict_innovations(filter.estimate(), batch);
   last_update_.prefit = batch.residual.head<2>();
   last_update_.postfit = last_update_.prefit;
   last_update_.nis = estimation::group_nis(batch, 0, 2);
+  return Status::kOk;
+}
+
+/// The centroid as unknown as before the first bearing. A target that follows the orbit shows it at the same place for
+/// half an orbit; as the Sun leaves one face for the next, or reaches a dark body from behind, it moves across the
+/// body.
+void BearingAiding::forget_centroid(filter::RelativeNavigationFilter& filter) {
+  centroid_scale_ = 1.0;
+  const auto& processes = filter.settings().processes;
+  for_each_block_of_centroid(
+      [&]<class Block>() { filter::initialize_block<Block>(filter.estimate(), processes.of<Block>()); });
+}
+
+BearingEditStatus BearingAiding::process_measurement(const target_tracking::BearingMeasurement& bearing,
+                                                     const Vector3& sun_eci, filter::RelativeNavigationFilter& filter) {
+  if (batch_.size() > 0 && bearing.time - batch_.last_time() > kSilence) close_window();
+  if (!filter.is_precisely_determined()) centroid_scale_ = 1.0;
+  filter::MeasurementBatch& batch = filter.workspace();
+  if (predict(bearing, sun_eci, filter) != Status::kOk) return BearingEditStatus::kRejected;
+  last_bearing_ = bearing;
+  last_sun_eci_ = sun_eci;
+  // A bearing contradicts other sources by more than the stated size of the target's centroid errors only.
+  if (centroid_scale_ < 1.0 && !(last_update_.nis <= settings_.gate)) {
+    forget_centroid(filter);
+    if (predict(bearing, sun_eci, filter) != Status::kOk) return BearingEditStatus::kRejected;
+  }
   aid_.consistency().add(last_update_.nis, 2);
   note_correlation(bearing, batch);
   adapt_centroid_noise(filter);
@@ -350,8 +388,10 @@ void BearingAiding::add_to_window(const target_tracking::BearingMeasurement& bea
   const filter::Estimate& estimate = filter.estimate();
   const double growth = target_tracking::centroid_scatter_growth(target_tracking::cos_phase_of(sight, sun_eci));
   const Matrix3 axes = target_tracking::bearing_axes(bearing.direction_eci, servicer);
+  const Vector3 target_eci = target.value().position_eci;
+  const Vector3 camera = target_eci - sight;
   Vector3 offset =
-      estimate.mean(kAt<BrightnessOffset>) / range * target_tracking::brightness_displacement(sight, sun_eci);
+      (target_tracking::centre_of_brightness(target_eci, camera, sun_eci, offsets_of(estimate)) - target_eci) / range;
   for (int axis = 0; axis < 2; ++axis) {
     offset += (estimate.mean(kAt<BearingBias> + axis) + growth / range * estimate.mean(kAt<CentroidWander> + axis)) *
               axes.row(axis).transpose();
@@ -386,9 +426,11 @@ EstimatedOrbit BearingAiding::estimated_orbit(const filter::RelativeNavigationFi
   orbit.distance_m = math::sqrt(sight.squaredNorm());
   const double growth = target_tracking::centroid_scatter_growth(target_tracking::cos_phase_of(sight, sun_eci));
   const auto& processes = filter.settings().processes;
-  const double offset_sigma = filter::is_active<BrightnessOffset>(estimate)
-                                  ? math::sqrt(estimate.variance(kAt<BrightnessOffset>))
-                                  : processes.of<BrightnessOffset>().sigma;
+  const auto sigma_of = [&]<class Block>() {
+    return filter::is_active<Block>(estimate) ? math::sqrt(estimate.variance(kAt<Block>)) : processes.of<Block>().sigma;
+  };
+  const double offset_sigma =
+      math::hypot(sigma_of.template operator()<BrightnessOffset>(), sigma_of.template operator()<EarthlightOffset>());
   const double lasting_m = math::hypot(growth * processes.of<CentroidWander>().sigma, offset_sigma);
   orbit.common_sigma = math::hypot(processes.of<BearingBias>().sigma, lasting_m / orbit.distance_m);
   return orbit;

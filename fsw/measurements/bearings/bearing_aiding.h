@@ -29,9 +29,9 @@ struct BearingModel {
 /// Fills the batch with the two components of the measured direction across the predicted one (bearing_axes(), rad).
 /// The filter stands at the time of the bearing. Any status of the orbit conversions if there is no target to predict.
 ///
-/// Model: axes (rho + offset s - o) / |...| + growth wander / |...| + bearing bias; s is the displacement of a unit
-/// offset towards the Sun and `growth` that of the scatter of the centroid with the phase angle. rho is sampled over
-/// the ROE, all others enter linearly.
+/// Model: axes (rho + offset s + earthlight e - o) / |...| + growth wander / |...| + bearing bias; s and e are the
+/// displacements of unit offsets towards the Sun and the Earth, and `growth` that of the scatter of the centroid with
+/// the phase angle. rho is sampled over the ROE, all others enter linearly.
 Status bearing_rows(const filter::RelativeNavigationFilter& filter, const target_tracking::BearingMeasurement& bearing,
                     const Vector3& sun_eci, const BearingModel& model, filter::MeasurementBatch& batch);
 
@@ -99,6 +99,9 @@ class BearingAiding {
                             filter::RelativeNavigationFilter& filter);
   BearingEditStatus process_measurement(const target_tracking::BearingMeasurement& bearing, const Vector3& sun_eci,
                                         filter::RelativeNavigationFilter& filter);
+  Status predict(const target_tracking::BearingMeasurement& bearing, const Vector3& sun_eci,
+                 filter::RelativeNavigationFilter& filter);
+  void forget_centroid(filter::RelativeNavigationFilter& filter);
   void adapt_noise(const target_tracking::BearingMeasurement& bearing, const filter::MeasurementBatch& batch,
                    filter::RelativeNavigationFilter& filter);
   void adapt_centroid_noise(const filter::RelativeNavigationFilter& filter);

@@ -63,6 +63,10 @@ constexpr int kMinStars = 5;
 // to image (Monte Carlo of target_tracking/bearing.h), more with a slow one.
 constexpr double kLastingShare = 0.625;
 
+// The displacement of the centroid by earthlight over that by sunlight (target_tracking/bearing.h): always towards the
+// Earth, and as uncertain as it is large.
+constexpr double kEarthlightShare = 0.2;
+
 constexpr double kSpeedOfLight = 299792458.0;  // m/s
 
 // The target is visible when it is illuminated. Near an edge of the shadow it may or may not be.
@@ -90,6 +94,9 @@ bool BearingSource::configure(const Configuration& configuration) {
     const auto bearings = bearing_settings(*angles_only);
     if (!optics.ok() || !bearings.ok()) return false;
     configuration.settings.processes.of<BrightnessOffset>().sigma = angles_only->brightness_offset_m;
+    estimation::GaussMarkov& earthlight = configuration.settings.processes.of<EarthlightOffset>();
+    earthlight.mean = kEarthlightShare * angles_only->brightness_offset_m;
+    earthlight.sigma = earthlight.mean;
     configuration.settings.processes.of<CentroidWander>().sigma = kLastingShare * angles_only->centroid_noise_m;
     configuration.settings.processes.of<BearingBias>().sigma = angles_only->bearing_bias;
     aiding_.configure(bearings.value());

@@ -15,6 +15,12 @@ struct BrightnessOffset : estimation::GaussMarkovBlock<BrightnessOffset, 1> {
   static constexpr estimation::GaussMarkov kDefaults{.sigma = 0.15, .time_s = 20000.0};
 };
 
+/// Displacement of the centre of brightness towards the Earth's centre, by light that the Earth reflects, m. It is in
+/// the orbital plane whatever the Sun's direction: left out, it is taken for a change of the distance.
+struct EarthlightOffset : estimation::GaussMarkovBlock<EarthlightOffset, 1> {
+  static constexpr estimation::GaussMarkov kDefaults{.sigma = 0.05, .time_s = 100000.0};
+};
+
 /// Wander of the centroid of a resolved shape, in the rows of bearing_axes(), m.
 struct CentroidWander {
   static constexpr int kSize = 2;

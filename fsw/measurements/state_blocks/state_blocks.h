@@ -11,9 +11,9 @@
 namespace vbar::fsw::measurements {
 
 using MeasurementBlocks =
-    estimation::Layout<KeypointOrigin, BearingBias, CameraMounts, BrightnessOffset, CentroidWander, KeypointCommon,
-                       KeypointErrors, RangeBias, ServicerAntenna, TargetAntenna, PhaseCentreJitter, ClockDifference,
-                       CodeBiases, Ionosphere, Ambiguities, PhaseWander>;
+    estimation::Layout<KeypointOrigin, BearingBias, CameraMounts, BrightnessOffset, CentroidWander, EarthlightOffset,
+                       KeypointCommon, KeypointErrors, RangeBias, ServicerAntenna, TargetAntenna, PhaseCentreJitter,
+                       ClockDifference, CodeBiases, Ionosphere, Ambiguities, PhaseWander>;
 
 /// Most measurements of one batch: two of each keypoint.
 inline constexpr int kMaxMeasurements = KeypointErrors::kSize;

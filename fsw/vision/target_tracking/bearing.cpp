@@ -49,9 +49,16 @@ Vector3 brightness_displacement(const Vector3& sight, const Vector3& sun_eci) {
   return (length / (sine > kMinSine ? sine : kMinSine)) * across;
 }
 
+Vector3 earthlight_displacement(const Vector3& sight, const Vector3& target_eci) {
+  const Vector3 to_earth = -target_eci / math::sqrt(target_eci.squaredNorm());
+  return to_earth - sight.dot(to_earth) / sight.squaredNorm() * sight;
+}
+
 Vector3 centre_of_brightness(const Vector3& target_eci, const Vector3& camera_eci, const Vector3& sun_eci,
-                             double offset_m) {
-  return target_eci + offset_m * brightness_displacement(target_eci - camera_eci, sun_eci);
+                             const BrightnessOffsets& offsets) {
+  const Vector3 sight = target_eci - camera_eci;
+  return target_eci + offsets.to_sun_m * brightness_displacement(sight, sun_eci) +
+         offsets.to_earth_m * earthlight_displacement(sight, target_eci);
 }
 
 }  // namespace vbar::fsw::target_tracking

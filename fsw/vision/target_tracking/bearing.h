@@ -40,8 +40,17 @@ double centroid_scatter_growth(double cos_phase);
 /// phase angle of 90 deg.
 Vector3 brightness_displacement(const Vector3& sight, const Vector3& sun_eci);
 
-/// Centre of brightness of a target with an offset of `offset_m` at a phase angle of 90 deg.
+/// Displacement of the centre of brightness across the line of sight by earthlight: the part of the unit vector towards
+/// the Earth's centre. Images of Tango with the Earth's light, 70 m to 8 km, at two nodes: 1 to 2 cm towards the Earth
+/// above its night side, 3 cm at a Sun 12 deg above the horizon, 5 to 7 cm at 60 deg.
+Vector3 earthlight_displacement(const Vector3& sight, const Vector3& target_eci);
+
+/// Offsets of the centre of brightness, m: towards the Sun, at a phase angle of 90 deg, and towards the Earth.
+struct BrightnessOffsets {
+  double to_sun_m = 0.0;
+  double to_earth_m = 0.0;
+};
 Vector3 centre_of_brightness(const Vector3& target_eci, const Vector3& camera_eci, const Vector3& sun_eci,
-                             double offset_m);
+                             const BrightnessOffsets& offsets);
 
 }  // namespace vbar::fsw::target_tracking

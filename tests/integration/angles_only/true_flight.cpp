@@ -189,7 +189,7 @@ MeasuredEpoch SimulatedSensors::measure(std::size_t index) {
                       std::uniform_real_distribution<double>(-1.0, 1.0)(random_));
   if (!truth.is_target_lit) return epoch;
   const Vector3 centre = fsw::target_tracking::centre_of_brightness(
-      truth.target.position_eci, truth.servicer.position_eci, truth.sun_eci, brightness_offset_m_);
+      truth.target.position_eci, truth.servicer.position_eci, truth.sun_eci, {.to_sun_m = brightness_offset_m_});
   const Vector3 sight = centre - truth.servicer.position_eci;
   const double radius = kTargetRadius_m / sight.norm();
   Vector2 off = bias_ + errors_.bearing_arcsec * kArcsec * white + errors_.shape_share * radius * shape_;

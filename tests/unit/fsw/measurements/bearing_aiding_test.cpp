@@ -255,23 +255,26 @@ TEST(BearingRows, TheirUpdateIsKalmans) {
   filter->initialize_relative(roe, sigma_roe.cwiseAbs2().asDiagonal(), SolutionStatus::kEstimated);
   filter::Estimate& estimate = filter->estimate();
   estimate.reset(kAt<BrightnessOffset>, 0.1, 0.15 * 0.15);
+  estimate.reset(kAt<EarthlightOffset>, -0.03, 0.05 * 0.05);
   for (int axis = 0; axis < 2; ++axis) {
     estimate.reset(kAt<CentroidWander> + axis, 0.02 - 0.05 * axis, 0.3 * 0.3);
     estimate.reset(kAt<BearingBias> + axis, 1e-6, 1.5e-5 * 1.5e-5);
   }
 
-  using Small = Eigen::Matrix<double, 11, 1>;  // ROE, brightness offset, wander, boresight
-  constexpr std::array<int, 11> kIndex = {0,
-                                          1,
-                                          2,
-                                          3,
-                                          4,
-                                          5,
-                                          kAt<BrightnessOffset>,
-                                          kAt<CentroidWander>,
-                                          kAt<CentroidWander> + 1,
-                                          kAt<BearingBias>,
-                                          kAt<BearingBias> + 1};
+  constexpr int kSmall = 12;
+  using Small = Eigen::Matrix<double, kSmall, 1>;  // ROE, brightness offset, wander, boresight, earthlight offset
+  constexpr std::array<int, kSmall> kIndex = {0,
+                                              1,
+                                              2,
+                                              3,
+                                              4,
+                                              5,
+                                              kAt<BrightnessOffset>,
+                                              kAt<CentroidWander>,
+                                              kAt<CentroidWander> + 1,
+                                              kAt<BearingBias>,
+                                              kAt<BearingBias> + 1,
+                                              kAt<EarthlightOffset>};
   const auto bearing = bearing_of(scene_start(), servicer, scene_target(servicer, roe), 12.0 * kArcsec, {2e-5, -3e-5});
   const Matrix3 axes = target_tracking::bearing_axes(bearing.direction_eci, servicer);
   const double growth = target_tracking::centroid_scatter_growth(
@@ -279,28 +282,29 @@ TEST(BearingRows, TheirUpdateIsKalmans) {
   const auto shown = [&](const Small& x) {
     const Vector3 target = scene_target(servicer, x.head<6>()).position_eci;
     const Vector3 sight =
-        target_tracking::centre_of_brightness(target, servicer.position_eci, scene_sun(), x(6)) - servicer.position_eci;
-    return Vector2(axes.topRows<2>() * sight.normalized() + growth * x.segment<2>(7) / sight.norm() + x.tail<2>());
+        target_tracking::centre_of_brightness(target, servicer.position_eci, scene_sun(), {x(6), x(11)}) -
+        servicer.position_eci;
+    return Vector2(axes.topRows<2>() * sight.normalized() + growth * x.segment<2>(7) / sight.norm() + x.segment<2>(9));
   };
   Small mean, sigma;
-  for (int k = 0; k < 11; ++k) {
+  for (int k = 0; k < kSmall; ++k) {
     mean(k) = estimate.mean(kIndex[static_cast<std::size_t>(k)]);
     sigma(k) = std::sqrt(estimate.variance(kIndex[static_cast<std::size_t>(k)]));
   }
-  Eigen::Matrix<double, 2, 11> h;
-  for (int k = 0; k < 11; ++k) {
+  Eigen::Matrix<double, 2, kSmall> h;
+  for (int k = 0; k < kSmall; ++k) {
     const Small step = 0.01 * sigma(k) * Small::Unit(k);
     h.col(k) = (shown(mean + step) - shown(mean - step)) / (0.02 * sigma(k));
   }
   BearingModel model;
   model.centroid_noise_m = 0.5;
   const double range = (scene_target(servicer, roe).position_eci - servicer.position_eci).norm();
-  const Eigen::Matrix<double, 11, 11> p = sigma.cwiseAbs2().asDiagonal();
+  const Eigen::Matrix<double, kSmall, kSmall> p = sigma.cwiseAbs2().asDiagonal();
   const double variance = bearing.sigma * bearing.sigma + 0.25 * growth * growth / (range * range);
   const Matrix2 s = h * p * h.transpose() + variance * Matrix2::Identity();
-  const Eigen::Matrix<double, 11, 2> gain = p * h.transpose() * s.inverse();
+  const Eigen::Matrix<double, kSmall, 2> gain = p * h.transpose() * s.inverse();
   const Small expected = mean - gain * shown(mean);
-  const Eigen::Matrix<double, 11, 11> rest = p - gain * h * p;
+  const Eigen::Matrix<double, kSmall, kSmall> rest = p - gain * h * p;
 
   filter::MeasurementBatch& batch = filter->workspace();
   ASSERT_EQ(bearing_rows(*filter, bearing, scene_sun(), model, batch), Status::kOk);
@@ -309,7 +313,7 @@ TEST(BearingRows, TheirUpdateIsKalmans) {
   EXPECT_NEAR(nis, shown(mean).dot(s.inverse() * shown(mean)), 1e-3 * nis);
   EXPECT_NEAR(nis, estimation::joint_nis(batch), 1e-9 * nis);
   ASSERT_TRUE(filter->update(BearingAiding::kSource, batch));
-  for (int k = 0; k < 11; ++k) {
+  for (int k = 0; k < kSmall; ++k) {
     const int i = kIndex[static_cast<std::size_t>(k)];
     // The bearing's curvature over a sigma is 1e-4 of its slope.
     EXPECT_NEAR(estimate.mean(i), expected(k), 1e-3 * sigma(k)) << k;

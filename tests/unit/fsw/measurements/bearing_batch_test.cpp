@@ -166,7 +166,7 @@ TEST(CentreOfBrightness, LiesAcrossTheLineOfSightOnTheLitSideAsThatOfASphere) {
     // From the target the camera is in the direction +y.
     const Vector3 sun(std::sin(phase), std::cos(phase), 0.0);
     const double offset = 0.2;
-    const Vector3 centre = target_tracking::centre_of_brightness(target, camera, sun, offset);
+    const Vector3 centre = target_tracking::centre_of_brightness(target, camera, sun, {.to_sun_m = offset});
     const double lune = std::sin(phase) + (M_PI - phase) * std::cos(phase);
     const double sphere = offset * (1.0 + std::cos(phase)) * std::sin(phase) / lune;
     EXPECT_NEAR((centre - target).x(), sphere, 0.13 * sphere) << phase;
@@ -176,9 +176,25 @@ TEST(CentreOfBrightness, LiesAcrossTheLineOfSightOnTheLitSideAsThatOfASphere) {
   // A body of flat faces has no more at larger angles: Tango by Monte Carlo (bearing.h).
   const double angle = 140.0 * M_PI / 180.0;
   const Vector3 sun(std::sin(angle), std::cos(angle), 0.0);
-  EXPECT_NEAR(target_tracking::centre_of_brightness(target, camera, sun, 0.163).x() - target.x(), 0.164, 0.03);
+  EXPECT_NEAR(target_tracking::centre_of_brightness(target, camera, sun, {.to_sun_m = 0.163}).x() - target.x(), 0.164,
+              0.03);
   // Full target: none.
-  EXPECT_LT((target_tracking::centre_of_brightness(target, camera, Vector3(0.0, 1.0, 0.0), 0.2) - target).norm(), 1e-9);
+  EXPECT_LT((target_tracking::centre_of_brightness(target, camera, Vector3(0.0, 1.0, 0.0), {.to_sun_m = 0.2}) - target)
+                .norm(),
+            1e-9);
+}
+
+/// The part of the vector towards the Earth across the line of sight: all of it for a target ahead, none for one below.
+TEST(CentreOfBrightness, LiesTowardsTheEarthByItsLight) {
+  const Vector3 camera(7e6, 0.0, 0.0), sun = Vector3::UnitZ();
+  const auto moved = [&](const Vector3& target) -> Vector3 {
+    return target_tracking::centre_of_brightness(target, camera, sun, {.to_earth_m = 0.03}) - target;
+  };
+  // A kilometre ahead the directions to the Earth differ by 1.4e-4 rad.
+  EXPECT_LT((moved({7e6, 1000.0, 0.0}) - Vector3(-0.03, 0.0, 0.0)).norm(), 1e-5);
+  EXPECT_LT(moved({6.999e6, 0.0, 0.0}).norm(), 1e-9);
+  // 45 deg below: sin 45 deg of it, at 45 deg to both.
+  EXPECT_LT((moved({6.999e6, 1000.0, 0.0}) - Vector3(-0.015, -0.015, 0.0)).norm(), 1e-5);
 }
 
 }  // namespace

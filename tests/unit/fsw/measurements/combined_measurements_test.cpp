@@ -41,6 +41,7 @@ struct CombinedPair : test::FilterPair {
     filter_settings.relative_orbit.empirical.sigma = 1e-10;
     filter_settings.processes.of<CentroidWander>().sigma = 1e-4;
     filter_settings.processes.of<BrightnessOffset>().sigma = 1e-4;
+    filter_settings.processes.of<EarthlightOffset>().sigma = 1e-4;
     filter_settings.processes.of<BearingBias>().sigma = 1e-7;
     begin_filter();
     set_centroid_noise(0.0);
@@ -220,11 +221,39 @@ TEST(CombinedSources, CentroidNoiseIsMeasuredAgainstCarrierPhase) {
   }
 }
 
+// The noise of the centroid has been adapted to a target that follows the orbit. Then the Sun reaches another of its
+// faces, and the centroid moves by 22 cm at 105 m: within the configured size it contradicts no other source. Two
+// metres do.
+TEST(CombinedSources, ACentroidThatMovesWithinItsStatedSizeContradictsNoOtherSource) {
+  constexpr double kDistance_m = 105.0;
+  for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+    CombinedPair pair(seed, kDistance_m);
+    pair.filter_settings.processes.of<CentroidWander>().sigma = 0.05;
+    pair.filter_settings.processes.of<BrightnessOffset>().sigma = 0.15;
+    pair.filter_settings.processes.of<EarthlightOffset>().sigma = 0.05;
+    pair.begin_filter();
+    pair.fly(20, true, false);
+    pair.set_centroid_noise(0.08);
+    pair.centroid_noise_m = 0.01;
+    pair.fly(120, true, true);
+    ASSERT_EQ(pair.camera.aid().state(), AidState::kAiding) << seed;
+    for (int k = 0; k < 40; ++k) {
+      pair.fly(1, true, true, 0.22 / std::sqrt(2.0) / kDistance_m);
+      EXPECT_FALSE(pair.camera.aid().is_contradicting()) << seed << ' ' << k;
+      EXPECT_FALSE(pair.camera.aid().consistency().is_outside()) << seed << ' ' << k;
+    }
+    EXPECT_EQ(pair.camera.aid().state(), AidState::kAiding) << seed;
+    pair.fly(10, true, true, 2.0 / std::sqrt(2.0) / kDistance_m);
+    EXPECT_TRUE(pair.camera.aid().is_contradicting()) << seed;
+  }
+}
+
 /// The pair 12 m apart, with a camera whose images show keypoints besides: lit from abeam of the orbit.
 struct ClosePair : CombinedPair {
   explicit ClosePair(unsigned seed) : CombinedPair(seed, 12.0) {
     filter_settings.processes.of<CentroidWander>().sigma = 0.02;
     filter_settings.processes.of<BrightnessOffset>().sigma = 1e-3;
+    filter_settings.processes.of<EarthlightOffset>().sigma = 1e-3;
     filter_settings.attitude.inertia = filter::inertia_of(3.0 * Matrix3::Identity()).value();
     begin_filter();
     set_centroid_noise(0.05);  // of a resolved target

@@ -79,7 +79,7 @@ TEST(CentroidOfLight, OfTangoScattersWithThePhaseAngleAsModelled) {
     const double modelled = kScatterAtHalfPhase_m * fsw::target_tracking::centroid_scatter_growth(std::cos(phase));
     const double offset = fsw::target_tracking::centre_of_brightness(Vector3(0.0, 0.0, kRange_m), Vector3::Zero(),
                                                                      Vector3(std::sin(phase), 0.0, -std::cos(phase)),
-                                                                     kOffsetAtHalfPhase_m)
+                                                                     {.to_sun_m = kOffsetAtHalfPhase_m})
                               .x();
     EXPECT_NEAR(moments.mean, offset, 0.04) << degrees;
     EXPECT_NEAR(scatter / modelled, 1.0, 0.35) << degrees;
