@@ -21,11 +21,14 @@ struct Candidate {
   Vector6 error = Vector6::Zero();
 };
 
+double orbital_speed(const LegSituation& situation) {
+  return orbit::mean_motion(situation.orbits.servicer.a) * situation.orbits.servicer.a;
+}
+
 // Returns the limit of the cost of a correction: `error` as a change of inclination, the most expensive, and a share of
 // the burns.
 double affordable_dv(const LegSituation& situation, const Plan& plan, const Vector6& error, const LegPolicy& policy) {
-  const double speed = orbit::mean_motion(situation.orbits.servicer.a) * situation.orbits.servicer.a;
-  return (1.0 + policy.max_cost_increase) * plan.total_dv() + speed * error.norm();
+  return (1.0 + policy.max_cost_increase) * plan.total_dv() + orbital_speed(situation) * error.norm();
 }
 
 // Returns `plan` if it arrives.
@@ -64,6 +67,13 @@ bool arrives(const LegSituation& situation, const Vector6& error, const LegPolic
     sum += (error[row] / unit) * (error[row] / unit);
   }
   return sum <= 1.0;
+}
+
+double expected_cost(const LegSituation& situation, const Plan& plan, const Vector6& error, const LegPolicy& policy) {
+  const Vector6 sigma = arrival_sigma(situation);
+  double miss = 0.0;
+  for (int row = 0; row < 6; ++row) miss += math::hypot(error[row], sigma[row]);
+  return plan.total_dv() + policy.miss_price * orbital_speed(situation) * miss;
 }
 
 Result<Plan> plan_closed_form(const LegSituation& situation, const LegPolicy& policy) {

@@ -31,6 +31,10 @@ struct LegPolicy {
   /// Largest share by which corrected burns cost more than before, besides the cost of the error as a change of
   /// inclination, the most expensive one. Beyond it replanning may be cheaper.
   double max_cost_increase = 0.02;
+  /// Worth of an arrival error that is avoided, as a multiple of the delta-v that removes it on the following leg. On
+  /// that leg an orbit is available; a correction costs this multiple when about its inverse in radians of the orbit is
+  /// left: 200 s.
+  double miss_price = 5.0;
   CorrectionSettings correction;
   ClosedFormSettings closed_form;
 };
@@ -46,6 +50,11 @@ Vector6 arrival_sigma(const LegSituation& situation);
 /// Returns whether an arrival error is negligible: the root sum square of its elements, each in units of the larger of
 /// the tolerance and its 1 sigma, is below one.
 bool arrives(const LegSituation& situation, const Vector6& error, const LegPolicy& policy);
+
+/// Returns the expected cost of a plan, m/s: its delta-v, and the worth of the arrival error. Each element of the error
+/// is the root sum square of the predicted one and 1 sigma of the estimate, its expected magnitude within a quarter: a
+/// predicted error that the estimate does not know is worth little, because its correction leaves as much.
+double expected_cost(const LegSituation& situation, const Plan& plan, const Vector6& error, const LegPolicy& policy);
 
 /// Returns the closed-form solution of the rest of the leg, corrected on the nonlinear prediction. Errors of
 /// remaining_problem(), solve_closed_form() and correct_plan().

@@ -8,6 +8,7 @@ namespace {
 // The correlation of 60 pairs of white samples has a standard deviation of 0.13: thresholds at three of it and at one.
 constexpr double kLagging = 0.39;
 constexpr double kWhite = 0.13;
+constexpr double kExpectedSquares = 2.0;  // of two normalised innovations
 constexpr double kRaise = 10.0;
 constexpr double kLower = 0.5;
 
@@ -22,7 +23,8 @@ void AdaptiveNoise::add(const Vector2& normalised, Correlation correlation) {
   last_ = normalised;
   has_last_ = true;
   if (pairs_ < kWindow) return;
-  const bool may_lag = correlation == Correlation::kOfLag;
+  const bool exceeds = squares_ > kExpectedSquares * kWindow;
+  const bool may_lag = correlation == Correlation::kOfLag || (correlation == Correlation::kOfEitherBySize && exceeds);
   if (products_ > kLagging * squares_) {
     if (may_lag) psd_ = std::min(psd_ * kRaise, settings_.psd_max);
   } else if (products_ < (may_lag ? kWhite : kLagging) * squares_) {

@@ -29,8 +29,11 @@ class AdaptiveNoise {
 
   /// What makes neighbouring innovations alike, if they are.
   enum class Correlation : unsigned char {
-    kOfLag,    ///< a filter that lags
-    kOfEither  ///< or errors of the measurements that are themselves correlated: no reason for more noise
+    kOfLag,     ///< a filter that lags
+    kOfEither,  ///< or errors of the measurements that are themselves correlated: no reason for more noise
+    /// either again; but a lag that matters makes innovations exceed their standard deviations too, while correlated
+    /// errors of the expected size do not
+    kOfEitherBySize
   };
   /// Adds two innovations, each normalised by its standard deviation. After every kWindow pairs of neighbours the noise
   /// may change.

@@ -1,5 +1,7 @@
 #include "fsw/guidance/guidance.h"
 
+#include <algorithm>
+#include <limits>
 #include <span>
 #include <tuple>
 #include <type_traits>
@@ -220,6 +222,7 @@ void Guidance::decide(const gnc_configuration& configuration) {
 /// Keeps or corrects the plan, or replans by the solver of the leg's policy. While the estimate is too coarse, only a
 /// plan of the last solver is kept.
 bool Guidance::stays_on_plan(const gnc_configuration& configuration, bool estimate_too_coarse) {
+  alternative_.reset();
   if (estimate_too_coarse && report_.active_solver != control::LastSolver::kId) return false;
   const control::LegSituation situation = leg_situation();
   const bool replans = !estimate_too_coarse && is_leg_of(control::LegSolver::kId);
@@ -228,6 +231,7 @@ bool Guidance::stays_on_plan(const gnc_configuration& configuration, bool estima
               : control::keep_or_correct(situation, plan_, leg_policy(configuration));
   if (!decision.ok()) return false;
   const control::LegDecision& decided = decision.value();
+  if (report_.active_solver != Solver::kNone) alternative_ = decided.plan;
   if (decided.action == control::LegAction::kHandOver) {
     if (replans) status_of(control::LegSolver::kId) = decided.closed_form;
     return false;
@@ -263,9 +267,32 @@ bool Guidance::solver_fallback(const gnc_configuration& configuration, bool esti
       if (place > first_place) ++report_.solver_fallbacks;
       const Result<Plan> candidate = solve<Entry>(configuration);
       report_.status[place] = candidate.status();
-      return candidate.ok() && adopt_if_flyable(refined(candidate.value()), configuration);
+      return candidate.ok() && adopt_cheaper(refined(candidate.value()), configuration);
     }
   });
+}
+
+/// Adopts a new plan, or the previous one with or without a correction, if its miss is worth less than the difference
+/// in delta-v: a solver reaches the waypoint at any cost, which grows without bound as the arrival approaches.
+bool Guidance::adopt_cheaper(const Plan& candidate, const gnc_configuration& configuration) {
+  if (alternative_) {
+    const Plan corrected = refined(*alternative_);
+    const double kept_cost = expected_cost(*alternative_, configuration);
+    const double corrected_cost = expected_cost(corrected, configuration);
+    const bool is_cheaper = std::min(kept_cost, corrected_cost) < expected_cost(candidate, configuration);
+    if (is_cheaper && adopt_if_flyable(corrected_cost < kept_cost ? corrected : *alternative_, configuration)) {
+      return true;
+    }
+  }
+  return adopt_if_flyable(candidate, configuration);
+}
+
+/// Returns the expected cost of a plan for the leg, m/s; infinite if it cannot be predicted.
+double Guidance::expected_cost(const Plan& plan, const gnc_configuration& configuration) const {
+  const control::LegSituation situation = leg_situation();
+  const Result<Vector6> error = control::evaluate_plan(situation, plan);
+  if (!error.ok()) return std::numeric_limits<double>::infinity();
+  return control::expected_cost(situation, plan, error.value(), leg_policy(configuration));
 }
 
 /// Corrects the burns of a solver for the nonlinear model, if that reduces the error: solvers are linear.

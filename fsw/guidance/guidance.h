@@ -93,6 +93,8 @@ class Guidance {
   void decide(const gnc_configuration& configuration);
   bool stays_on_plan(const gnc_configuration& configuration, bool estimate_too_coarse);
   bool solver_fallback(const gnc_configuration& configuration, bool estimate_too_coarse);
+  bool adopt_cheaper(const control::Plan& candidate, const gnc_configuration& configuration);
+  [[nodiscard]] double expected_cost(const control::Plan& plan, const gnc_configuration& configuration) const;
   bool adopt_if_flyable(const control::Plan& candidate, const gnc_configuration& configuration);
   [[nodiscard]] control::Plan refined(const control::Plan& candidate) const;
   template <class Entry>
@@ -123,8 +125,9 @@ class Guidance {
   Waypoint goal_;
   bool has_goal_ = false;
   bool is_holding_ = false;
-  control::Plan plan_;     ///< still to be commanded
-  control::Plan pending_;  ///< commanded, not yet due
+  control::Plan plan_;                        ///< still to be commanded
+  control::Plan pending_;                     ///< commanded, not yet due
+  std::optional<control::Plan> alternative_;  ///< to a new plan in this decision: the previous one, which misses
   GpsTime next_decision_;
   std::array<CommandedBurn, kMaxCommandsPerStep> commands_{};
   std::size_t command_count_ = 0;

@@ -443,15 +443,12 @@ void CarrierFilter::release(filter::RelativeNavigationFilter& filter, double pos
   filter.finish_update();
 }
 
-double CarrierFilter::largest_antenna_offset(const filter::Estimate& estimate) const {
-  double largest_m = 0.0;
+double CarrierFilter::antenna_misfit(const filter::Estimate& estimate) const {
+  double sum_m2 = 0.0;
   for (const int block : {kAt<ServicerAntenna>, kAt<TargetAntenna>}) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const double offset_m = math::abs(estimate.mean(block + axis));
-      if (offset_m > largest_m) largest_m = offset_m;
-    }
+    for (int axis = 0; axis < 3; ++axis) sum_m2 += square(estimate.mean(block + axis));
   }
-  return largest_m / antenna_sigma_m_;
+  return math::sqrt(sum_m2) / antenna_sigma_m_;
 }
 
 void CarrierFilter::widen_antennas(filter::RelativeNavigationFilter& filter, double factor) {

@@ -66,9 +66,10 @@ class CarrierFilter {
   /// wrong integers may have shifted it by as much.
   void release(filter::RelativeNavigationFilter& filter, double position_sigma_m);
 
-  /// The largest component of both antennas' estimated offsets, over its assumed 1 sigma: beyond what a normal
-  /// distribution allows, the nominal position of an antenna is wrong.
-  [[nodiscard]] double largest_antenna_offset(const filter::Estimate& estimate) const;
+  /// Root of the sum of squares of both antennas' estimated offsets, over their assumed 1 sigma: beyond what a normal
+  /// distribution allows, the nominal position of an antenna is wrong. A baseline shifted by d is divided among both,
+  /// d / 2 each: the result is d over the sigma of the difference, of all axes that the dynamics observe.
+  [[nodiscard]] double antenna_misfit(const filter::Estimate& estimate) const;
   /// 1 sigma of the offsets, per axis, m, as assumed at present.
   [[nodiscard]] double antenna_sigma_m() const { return antenna_sigma_m_; }
   /// The offsets may be larger by `factor` than assumed so far.

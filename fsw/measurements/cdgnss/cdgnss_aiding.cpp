@@ -100,11 +100,11 @@ void CdgnssAiding::judge_integers(filter::RelativeNavigationFilter& filter) {
 /// A baseline between antennas that are not where they are assumed is fixed and precise, and wrong. Its motion
 /// contradicts the dynamics of the orbit, which the offsets of the antennas then follow.
 void CdgnssAiding::judge_antennas(filter::RelativeNavigationFilter& filter) {
-  const double offset = filter_.largest_antenna_offset(filter.estimate());
-  if (!(offset > kMaxAntennaOffset)) return;
-  ambiguities_.release(filter_, filter, offset * filter_.antenna_sigma_m());
-  filter_.widen_antennas(filter, kWiderAntennas);
-  aid_.note_inconsistency(offset);
+  const double misfit = filter_.antenna_misfit(filter.estimate());
+  if (!(misfit > kMaxAntennaMisfit)) return;
+  ambiguities_.release(filter_, filter, misfit * filter_.antenna_sigma_m());
+  filter_.widen_antennas(filter, misfit);
+  aid_.note_inconsistency(misfit);
 }
 
 void CdgnssAiding::suspend(GpsTime now, filter::RelativeNavigationFilter& filter) {

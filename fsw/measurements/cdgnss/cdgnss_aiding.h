@@ -100,10 +100,11 @@ class CdgnssAiding {
   static constexpr int kMinAgreeing = 3;
   /// The orbit is contradicted by most codes in this number of consecutive epochs.
   static constexpr int kMaxContradicted = 5;
-  /// An estimated offset of an antenna beyond this multiple of its sigma contradicts the sigma, which then grows by
-  /// kWiderAntennas.
-  static constexpr double kMaxAntennaOffset = 5.0;
-  static constexpr double kWiderAntennas = 3.0;
+  /// Estimated offsets of the antennas beyond this multiple of their sigma contradict the sigma, which then grows by
+  /// that multiple: an offset along the track, which is an orbit as well, may be as large as those that are observed.
+  /// Of chi-square with three degrees of freedom, 1.5e-4 is beyond its square; offsets within the sum of a centre of
+  /// mass in a ball of 3 mm and a phase centre at 5 mm reach 3.5.
+  static constexpr double kMaxAntennaMisfit = 4.5;
 
  private:
   struct CodeBaseline {

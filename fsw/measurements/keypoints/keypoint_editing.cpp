@@ -148,7 +148,8 @@ void KeypointEditing::adapt_noise(const filter::MeasurementBatch& batch, GpsTime
   if (filter.is_precisely_determined()) {
     acceleration.interrupt();
   } else {
-    acceleration.add(normalised.head<2>());
+    // A network errs alike in neighbouring images.
+    acceleration.add(normalised.head<2>(), filter::AdaptiveNoise::Correlation::kOfEitherBySize);
   }
   angular.add({normalised(2), normalised(4)});
 }

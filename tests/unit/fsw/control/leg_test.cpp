@@ -141,6 +141,43 @@ TEST(Arrives, WithinToleranceOrOneSigma) {
   EXPECT_FALSE(arrives(situation, error, policy));
 }
 
+// n a = 7.5042 km/s at a = 7078.139 km (mu = 398600.4418 km^3/s^2): a metre of an element costs 1.0602 mm/s on the next
+// leg.
+TEST(ExpectedCost, IsTheDeltaVAndTheWorthOfTheMiss) {
+  LegSituation situation = leg_start();
+  situation.orbits.servicer.a = mission::kReferenceA;
+  LegPolicy policy;
+  policy.miss_price = 5.0;
+  Plan plan;
+  plan.burns[plan.count++] = {.time = situation.earliest_burn, .dv_rtn = Vector3(0.0, 3e-3, -4e-3)};
+  EXPECT_NEAR(expected_cost(situation, plan, Vector6::Zero(), policy), 5e-3, 1e-12);
+  Vector6 error = Vector6::Zero();
+  error[0] = 0.02 / mission::kReferenceA;
+  error[5] = -0.03 / mission::kReferenceA;
+  EXPECT_NEAR(expected_cost(situation, plan, error, policy), 5e-3 + 5.0 * 0.05 * 1.0602e-3, 1e-7);
+}
+
+// Of a normal variable of mean m and standard deviation s, |x| has the expectation s sqrt(2/pi) exp(-m^2/2s^2) +
+// m erf(m/(s sqrt 2)) (Leone et al. 1961, the folded normal distribution): the worth of a correction is held against
+// it.
+TEST(ExpectedCost, ACorrectionThatTheEstimateCannotKnowIsWorthLittle) {
+  LegSituation situation = leg_start();
+  LegPolicy policy;
+  policy.miss_price = 1.0;
+  const double unit = orbit::mean_motion(situation.orbits.servicer.a) * situation.orbits.servicer.a;
+  const double sigma = 0.1 / mission::kReferenceA;
+  situation.sigma_roe[5] = sigma;  // diy, on which no other element depends, as they do on dix by J2
+  for (const double ratio : {0.0, 0.3, 1.0, 3.0}) {
+    Vector6 error = Vector6::Zero();
+    error[5] = ratio * sigma;
+    const double folded =
+        sigma * (std::sqrt(2.0 / M_PI) * std::exp(-0.5 * ratio * ratio) + ratio * std::erf(ratio / std::sqrt(2.0)));
+    const double worth = expected_cost(situation, {}, error, policy) / unit;
+    EXPECT_GT(worth, 0.99 * folded);
+    EXPECT_LT(worth, 1.26 * folded);  // sqrt(pi/2) at zero
+  }
+}
+
 }  // namespace
 
 // The nonlinear arrival prediction against integrated motion and against the maps it is made of.

@@ -182,6 +182,19 @@ TEST(AdaptiveNoise, CorrelatedErrorsOfTheMeasurementsAreNoReasonForMore) {
   EXPECT_EQ(noise.psd(), kSettings.psd_min);
 }
 
+TEST(AdaptiveNoise, CorrelatedInnovationsWithinTheirDeviationsAreNoLag) {
+  constexpr auto kCause = AdaptiveNoise::Correlation::kOfEitherBySize;
+  AdaptiveNoise within(kSettings);
+  feed(within, 0.7, 0.5, 400, false, kCause);
+  EXPECT_EQ(within.psd(), kSettings.psd);
+  AdaptiveNoise beyond(kSettings);
+  feed(beyond, 0.7, 2.0, 400, false, kCause);
+  EXPECT_EQ(beyond.psd(), kSettings.psd_max);
+  AdaptiveNoise white(kSettings);
+  feed(white, 0.0, 2.0, 1000, false, kCause);
+  EXPECT_EQ(white.psd(), kSettings.psd_min);
+}
+
 }  // namespace
 
 }  // namespace vbar::fsw::filter
