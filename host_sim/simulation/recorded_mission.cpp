@@ -56,12 +56,19 @@ void check_trust(const mission::Mission& mission, const std::filesystem::path& r
        {"image", computer.image},
        {"device", is_board && is_serial ? computer.device : ""},
        {"address", is_board && !is_serial ? computer.address : ""}}};
+  const auto refuse = [&](const std::string& path, const std::string& value) {
+    throw Refused(fmt::format("{}: names {} = \"{}\", which is used only with --trust, or with --set",
+                              run_folder.string(), path, value));
+  };
   for (const auto& [key, value] : named) {
     const auto is_this = [key = key](const std::string& assignment) { return flight_computer_key(assignment) == key; };
     if (value.empty() || std::ranges::any_of(given, is_this)) continue;
-    throw Refused(fmt::format("{}: names flight_computer.{} = \"{}\", which is used only with --trust, or with --set",
-                              run_folder.string(), key, value));
+    refuse(fmt::format("flight_computer.{}", key), value);
   }
+  const mission::UdpAddress& udp = mission.telemetry.udp;
+  const auto is_udp = [](const std::string& assignment) { return assignment.starts_with("telemetry.udp="); };
+  if (udp.port != 0 && std::ranges::none_of(given, is_udp))
+    refuse("telemetry.udp", fmt::format("{}:{}", udp.host, udp.port));
 }
 
 report::Summary summary_of_run(const std::filesystem::path& run_folder) {

@@ -138,24 +138,44 @@ class Live(unittest.TestCase):
 
 
 class LiveInBrowser(unittest.TestCase):
+    """The page of a folder that grows by hand: half of the rows of a run, then the others."""
+
     def test_the_page_follows_the_run(self):
         if not browser.program():
             self.skipTest(f"none of {', '.join(browser.PROGRAMS)} is installed")
         with scratch() as folder:
-            fly(folder / "alone", DURATION, mission=EXPERIMENT3)
-            need_page(folder / "alone")
-            with watched(folder / "run", 40) as (_, address), browser.browser() as page:
-                page.show()
-                page.open(address.geturl())
-                counts = [page.evaluate("vbarView.runs[0].table('truth').rows")]
-                deadline = time.monotonic() + 20
-                while counts[-1] == counts[0] and time.monotonic() < deadline:
-                    time.sleep(0.5)
-                    counts.append(page.evaluate("vbarView.runs[0].table('truth').rows"))
-                self.assertGreater(counts[-1], counts[0])
-                time.sleep(2.5)  # the page is drawn again at most every two seconds
-                self.assertEqual(page.evaluate("vbarView.cursor.t === vbarView.cursor.end && vbarView.cursor.end > vbarView.cursor.start"), True)
-                self.assertEqual(page.errors, [])
+            fly(folder / "run", DURATION, mission=EXPERIMENT3)
+            need_page(folder / "run")
+            summary, texts = summary_of(folder / "run"), {}
+            (folder / "run" / "summary.json").write_text(json.dumps(summary | {"complete": False, "incomplete_reason": "goes on"}))
+            for file in (folder / "run").glob("*.csv"):
+                lines = file.read_text().splitlines(keepends=True)
+                texts[file.with_name(f"{file.name}.part")] = "".join(lines[1 + len(lines) // 2:])
+                file.with_name(f"{file.name}.part").write_text("".join(lines[:1 + len(lines) // 2]))
+                file.unlink()
+            viewer = start("watch", folder / "run")
+            try:
+                address = re.fullmatch(r"watch   (\S+)\n", viewer.stderr.readline())[1]
+                with browser.browser() as page:
+                    page.show()
+                    page.open(address)
+                    before = page.evaluate("[vbarView.runs[0].table('truth').rows, vbarView.cursor.end, vbarView.cursor.t]")
+                    self.assertEqual(before[1], before[2])
+                    for part, text in texts.items():
+                        with part.open("a") as file:
+                            file.write(text)
+                    whole = page.evaluate("""new Promise((done) => { const look = () => {
+                      const { runs: [run], cursor } = vbarView;
+                      if (cursor.end > %r) done([run.table('truth').rows, cursor.end, cursor.t, run.table('estimate').column('relative_position_rtn_t_m').cells.at(-1)]);
+                      else setTimeout(look, 100); }; look(); })""" % before[1])
+                    rows = [line.split(",") for line in (folder / "run" / "truth.csv.part").read_text().splitlines()]
+                    self.assertEqual(whole[:3], [len(rows) - 1, float(rows[-1][0]), float(rows[-1][0])])
+                    names, *_, last = [line.split(",") for line in (folder / "run" / "estimate.csv.part").read_text().splitlines()]
+                    self.assertEqual(whole[3], last[names.index("relative_position_rtn_t_m")])
+                    self.assertEqual(page.errors, [])
+            finally:
+                viewer.terminate()
+                viewer.communicate(timeout=LIMIT_S)
 
 
 if __name__ == "__main__":
