@@ -50,6 +50,8 @@ constexpr Duration kSilence = duration_of_seconds(60);
 // Errors of neighbouring images are correlated: factor on the covariance of their positions.
 constexpr double kAlike = 4.0;
 constexpr double kMinSigma_m = 0.01;
+// Largest correlation of the errors of neighbouring positions.
+constexpr double kMaxLikeness = 0.95;
 
 bool is_finite(const KeypointImage& image) {
   return image.R_camera_eci.has_value() && math::is_finite(image.R_camera_eci->sum()) &&
@@ -192,9 +194,11 @@ bool KeypointAiding::agrees_with_image(const filter::AttitudeState& attitude) co
 
 /// From the consensus of the last images, which must include the current one: after a flip most of them are older.
 bool KeypointAiding::initialize_attitude(filter::RelativeNavigationFilter& filter) {
-  if (!has_sample_ || !(range_uncertainty(filter) <= settings_.start_range_share)) return false;
+  if (!has_sample_) return false;
   const auto attitude = start_.attitude();
   if (!attitude.ok() || !agrees_with_image(attitude.value().attitude)) return false;
+  const bool is_range_known = range_uncertainty(filter) <= settings_.start_range_share;
+  if (!is_range_known && attitude.value().agreeing < settings_.start_images) return false;
   filter.initialize_attitude(attitude.value().attitude, attitude.value().covariance);
   attitude_since_ = filter.epoch();
   images_of_attitude_ = 0;
@@ -212,6 +216,15 @@ Matrix3 KeypointAiding::position_covariance(const measurements::PoseSample& samp
       (is_agreed ? settings_.agreed_range_share : settings_.pose_range_share) * sample.relative_eci;
   const double lateral_sigma = is_agreed ? kMinSigma_m : settings_.pose_lateral_sigma_m;
   return range_sigma * range_sigma.transpose() + lateral_sigma * lateral_sigma * Matrix3::Identity();
+}
+
+/// Factor on the covariance of a position whose error is correlated with that of the last one, so that a number of
+/// such positions contributes as much as their mean under the first-order correlation r is worth: the weight of the
+/// first one, and (1 - r) / (1 + r) of it from each further one.
+double KeypointAiding::likeness_factor(const View& view) const {
+  if (!view_of_position_) return 1.0;
+  const double r = math::exp(-distance(*view_of_position_, view) / settings_.novelty.angle);
+  return (1.0 + r) / (1.0 - std::min(r, kMaxLikeness));
 }
 
 /// Distance of a pose from the estimate, m; empty within the gate.
@@ -239,13 +252,17 @@ KeypointEditStatus KeypointAiding::take_position(const KeypointImage& image, con
   accept(image.time);
   const auto agreed = start_.attitude();
   const bool is_agreed = has_sample_ && agreed.ok() && agrees_with_image(agreed.value().attitude);
-  const Matrix3 covariance = kAlike * sample.covariance_eci + position_covariance(sample, is_agreed);
+  const View view{Eigen::Quaterniond(image.pnp->pose.R_camera_body).normalized(),
+                  0.5 * math::log(sample.relative_eci.squaredNorm())};
+  const Matrix3 covariance =
+      kAlike * sample.covariance_eci + likeness_factor(view) * position_covariance(sample, is_agreed);
   filter::MeasurementBatch& batch = filter.workspace();
   if (position_rows(filter, sample.relative_eci, covariance, batch) != Status::kOk ||
       !filter.update(KeypointEditing::kSource, batch)) {
     last_accepted_ = before;
     return KeypointEditStatus::kRejected;
   }
+  view_of_position_ = view;
   ++counters_.positions_used;
   return KeypointEditStatus::kPosition;
 }

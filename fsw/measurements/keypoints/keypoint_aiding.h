@@ -30,7 +30,8 @@ struct KeypointAidingSettings {
   /// accurate, rad.
   int start_inliers = 8;
   double start_attitude_sigma = 0.05;
-  double start_range_share = 0.007;    ///< an attitude is initialised where the range is known to this share, 1 sigma
+  double start_range_share = 0.007;    ///< an attitude is initialised where the range is known to this share, 1 sigma,
+  int start_images = 6;                ///< or by the consensus of this number of images that are fit for it
   double keypoint_range_share = 0.03;  ///< beyond it, 1 sigma, only positions are used: keypoints are not linear in it
   double pose_range_share = 0.1;       ///< 1 sigma of the range of a single-image pose, as for a wrong attitude,
   double agreed_range_share = 0.035;   ///< and of one whose attitude agrees with those of the images before
@@ -132,6 +133,7 @@ class KeypointAiding {
   KeypointEditStatus take_keypoints(const KeypointImage& image, const CameraPose& camera,
                                     filter::RelativeNavigationFilter& filter);
   [[nodiscard]] Matrix3 position_covariance(const measurements::PoseSample& sample, bool is_agreed) const;
+  [[nodiscard]] double likeness_factor(const View& view) const;
   [[nodiscard]] std::optional<double> distance_if_far(const measurements::PoseSample& sample,
                                                       const filter::RelativeNavigationFilter& filter) const;
   void judge_network(const KeypointImage& image, const CameraPose& camera, bool is_rejected,
@@ -152,6 +154,7 @@ class KeypointAiding {
   Aid aid_;
   KeypointEditing editing_;
   ViewNovelty seen_;
+  std::optional<View> view_of_position_;  ///< of the last image that contributed its position alone
   measurements::PoseInitialiser start_;
   Light light_;                                                            ///< of the current image
   bool has_sample_ = false;                                                ///< of the current image, for initialisation

@@ -3,16 +3,12 @@
 #include "fsw/math/math.h"
 
 namespace vbar::fsw::measurements {
-namespace {
 
-/// rad
 double distance(const View& a, const View& b) {
   const Eigen::Quaterniond between = a.q_camera_body.conjugate() * b.q_camera_body;
   const double angle = 2.0 * math::atan2(math::sqrt(between.vec().squaredNorm()), math::abs(between.w()));
   return math::hypot(angle, a.log_range - b.log_range);
 }
-
-}  // namespace
 
 void ViewNovelty::clear() {
   count_ = 0;

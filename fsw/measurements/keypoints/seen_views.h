@@ -30,6 +30,9 @@ struct View {
   double log_range = 0.0;  ///< natural logarithm of the range in m: a factor of e^0.25 counts as 0.25 rad
 };
 
+/// Returns the distance of two views, rad.
+double distance(const View& a, const View& b);
+
 class ViewNovelty {
  public:
   void configure(const NoveltySettings& settings) { settings_ = settings; }
