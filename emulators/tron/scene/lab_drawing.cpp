@@ -14,6 +14,7 @@
 #include "emulators/tron/scene/shaders.h"
 #include "host_sim/mission/body_file.h"
 #include "host_sim/twins/camera/model/gl_objects.h"
+#include "host_sim/twins/camera/model/reflection.h"
 #include "host_sim/twins/camera/model/target_renderer.h"
 #include "host_sim/twins/camera/model/target_shaders.h"
 #include "host_sim/twins/camera/optics.h"
