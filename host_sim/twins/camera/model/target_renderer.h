@@ -46,7 +46,7 @@ struct TargetView {
 /// it.
 class TargetRenderer {
  public:
-  static constexpr int kMinTexels = 128;   ///< on a side of a picture drawn with OpenGL
+  static constexpr int kMinTexels = 256;   ///< on a side of a picture drawn with OpenGL
   static constexpr int kMaxTexels = 2048;  ///< larger bodies get larger texels than asked for
 
   /// Copies the parts of the model that it needs. Throws std::runtime_error if there is no OpenGL.
