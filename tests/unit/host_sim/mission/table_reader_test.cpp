@@ -200,7 +200,8 @@ TEST(Overrides, AreCheckedLikeTheFileAndNamedInTheMessage) {
        "duration_h, step_s or seed"},
       {"clok.mode=real_time",
        "clok: found an unknown key (did you mean clock?); accepted: mission, truth, testbed, waypoint, "
-       "spacecraft, guidance, safety, navigation, burn, fault, clock, links, lcm, record, limit, constellation or "
+       "spacecraft, guidance, safety, navigation, burn, fault, clock, links, lcm, telemetry, record, limit, "
+       "constellation or "
        "extends"},
       {"waypoint.1.time_h=0",
        "waypoint.1.time_h: found the integer 0; accepted: a time after that of waypoint 0, which stands before it"},

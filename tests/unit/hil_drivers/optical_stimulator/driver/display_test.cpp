@@ -129,7 +129,7 @@ TEST(Display, AnotherSizeOrOutputIsRefusedByName) {
 
 TEST(Display, WithoutACalibrationItIsOfItsOwnSize) {
   const Xvfb server(1280, 1024);
-  Display display({server.name()});
+  Display display({server.name(), ""});
   EXPECT_EQ(display.width(), 1280);
   EXPECT_EQ(display.height(), 1024);
   EXPECT_NO_THROW(display.show(Picture(1280, 1024)));
