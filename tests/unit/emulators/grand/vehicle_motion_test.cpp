@@ -150,9 +150,10 @@ TEST(VehicleMotion, DoubledAndOldSamplesAreIgnoredAndCounted) {
   EXPECT_EQ(motion.receive(sample_in_orbit(0.1)), Reception::kAccepted);  // out of order, but still in time
   motion.advance(ms(250));
   EXPECT_EQ(motion.receive(sample_in_orbit(0.2)), Reception::kDoubled);
-  EXPECT_EQ(motion.receive(sample_in_orbit(0.1)), Reception::kOutOfOrder);
-  EXPECT_EQ(motion.counters().samples, 6U);
-  EXPECT_EQ(motion.counters().doubled, 2U);
+  EXPECT_EQ(motion.receive(sample_in_orbit(0.1)), Reception::kDoubled);
+  EXPECT_EQ(motion.receive(sample_in_orbit(0.15)), Reception::kOutOfOrder);
+  EXPECT_EQ(motion.counters().samples, 7U);
+  EXPECT_EQ(motion.counters().doubled, 3U);
   EXPECT_EQ(motion.counters().out_of_order, 1U);
   EXPECT_EQ(motion.counters().late, 0U);
   EXPECT_LT(error_mm(motion, 0.25), 1e-4);
