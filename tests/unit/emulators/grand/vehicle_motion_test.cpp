@@ -179,13 +179,10 @@ TEST(VehicleMotion, CountsWhatTheNetworkDid) {
       ++lost;
       continue;
     }
-    std::int64_t first_ms = arrive(k);
-    if (dice > 0.98) {
-      ++doubled;
-      const std::int64_t again_ms = arrive(k);
-      if (again_ms < first_ms) first_ms = again_ms;
-    }
-    lead_sum_s += 1e-3 * static_cast<double>(20 * k + 200 - first_ms);
+    const bool is_doubled = dice > 0.98;
+    doubled += is_doubled ? 1 : 0;
+    const std::int64_t one_ms = arrive(k), other_ms = is_doubled ? arrive(k) : one_ms;
+    lead_sum_s += 1e-3 * static_cast<double>(20 * k + 200 - std::min(one_ms, other_ms));
   }
   VehicleMotion motion(kJoin);
   for (const auto& [at_ms, k] : arrivals) {

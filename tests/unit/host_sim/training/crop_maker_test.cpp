@@ -24,8 +24,9 @@ namespace vbar::training {
 namespace {
 
 CropMaker& maker() {
-  static CropMaker one(mission::data_directory(), "tango", CropKind::kTraining, 1);
-  return one;
+  // Not destroyed: Mesa, which its renderer loads with the first picture, ends before static objects do.
+  static auto* const one = new CropMaker(mission::data_directory(), "tango", CropKind::kTraining, 1);
+  return *one;
 }
 
 TEST(CropMaker, CropDependsOnSeedAndNumberOnly) {
