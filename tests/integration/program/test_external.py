@@ -250,8 +250,9 @@ class External(Programs):
             self.assertIn(fault, result.stderr)
 
     def test_a_program_of_a_source_that_the_mission_does_not_have(self):
-        program = f'program = "{sys.executable} {self.folder}/unused.py"'
+        program = f'program = "{SENSOR_IN_C} --stream 3"'
         mission = self.mission(f'{program}\n[[testbed.external.source]]\nname = "servicer/lidr"\n{program}')
+        mission.write_text(mission.read_text().replace("answer_limit_s = 2.0", ""))
         result = vbar("run", mission, "--quiet", "--force", "--out", self.folder / "run")
         self.assertEqual(result.returncode, 1, result.stderr)
         self.assertIn('testbed.external.source: found the name "servicer/lidr", which no sensor with source = "external" has; accepted: '
