@@ -11,9 +11,9 @@
 namespace vbar::optical_stimulator {
 
 struct DisplaySettings {
-  std::string x_display;  ///< ":7"; empty: that of the environment
-  std::string output;     ///< its name ("HDMI-1"); empty: the only one
-  int width = 0, height = 0;  ///< as calibrated; 0: as the output is
+  std::string x_display;                         ///< ":7"; empty: that of the environment
+  std::string output;                            ///< its name ("HDMI-1"); empty: the only one
+  int width = 0, height = 0;                     ///< as calibrated; 0: as the output is
   std::chrono::milliseconds answer_limit{5000};  ///< wait for the X server; then it counts as lost
 };
 
