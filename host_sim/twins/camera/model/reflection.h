@@ -40,7 +40,7 @@ VBAR_INLINE float max(float a, float b) {
   return a < b ? b : a;
 }
 VBAR_INLINE float clamp(float a, float low, float high) {
-  const float above = a > low ? a : low;  // the lower bound for a number that is none
+  const float above = a > low ? a : low;  // NaN: the lower bound
   return above < high ? above : high;
 }
 VBAR_INLINE float sqrt(float a) {
