@@ -151,9 +151,8 @@ constexpr double kDegree = M_PI / 180.0;
 constexpr double kRightDeg = 10.0;  // a pose farther off is wrong
 
 CloseScene& scene() {
-  // Not destroyed: Mesa, which its renderer loads with the first picture, ends before static objects do.
-  static auto* const one = new CloseScene;
-  return *one;
+  static CloseScene one;
+  return one;
 }
 
 /// Any attitude, 5 to 13 m ahead, near the middle.

@@ -51,7 +51,6 @@ class TargetRenderer {
 
   /// Copies the parts of the model that it needs. Throws std::runtime_error if there is no OpenGL.
   explicit TargetRenderer(const CadModel& model);
-  /// Frees what OpenGL holds: not to be called after main(), when Mesa has ended.
   ~TargetRenderer();
   TargetRenderer(const TargetRenderer&) = delete;
   TargetRenderer& operator=(const TargetRenderer&) = delete;

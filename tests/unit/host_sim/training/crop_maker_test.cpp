@@ -24,9 +24,8 @@ namespace vbar::training {
 namespace {
 
 CropMaker& maker() {
-  // Not destroyed: Mesa, which its renderer loads with the first picture, ends before static objects do.
-  static auto* const one = new CropMaker(mission::data_directory(), "tango", CropKind::kTraining, 1);
-  return *one;
+  static CropMaker one(mission::data_directory(), "tango", CropKind::kTraining, 1);
+  return one;
 }
 
 TEST(CropMaker, CropDependsOnSeedAndNumberOnly) {
