@@ -1,5 +1,6 @@
 #include "fsw/navigation/navigation.h"
 
+#include <algorithm>
 #include <span>
 
 #include "fsw/math/math.h"
@@ -115,7 +116,10 @@ void NavigationSolution::configure(const messaging::Telecommands& telecommands) 
     uses_camera_ = (telecommands.in_force<navigation_configuration>()->sources & kCamera) != 0;
     drop_state();
   }
-  if (telecommands.is_new<target_apriori>()) drop_state();
+  if (!telecommands.is_new<target_apriori>()) return;
+  drop_state();
+  const bool is_handed_over = telecommands.in_force<target_apriori>()->kind == target_apriori::kKindRoe;
+  handed_over_ = is_handed_over ? telecommands.time_of<target_apriori>() : GpsTime{};
 }
 
 std::span<const filter::Burn> NavigationSolution::own_burns() {
@@ -136,7 +140,7 @@ void NavigationSolution::adopt_estimate(const MeasurementScheduler& measurements
   const filter::RelativeNavigationFilter& filter = measurements.filter();
   const Result<orbit::CartesianState> target = filter.target();
   if (!target.ok()) return drop_state();
-  state_.last_measurement = measurements.last_measurement();
+  state_.last_measurement = std::max(measurements.last_measurement(), handed_over_);
   set_reference({filter.epoch(), filter.servicer(), target.value()});
 }
 

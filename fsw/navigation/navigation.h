@@ -34,7 +34,7 @@ struct NavigationState {
   bool has_target = false;  ///< sufficient for pointing a camera
   NavigationSource source = NavigationSource::kNone;
   GpsTime epoch;
-  GpsTime last_measurement;
+  GpsTime last_measurement;  ///< or of the formation that previous navigation handed over, if that is later
   orbit::CartesianState servicer;
   orbit::CartesianState target;
   /// 1 sigma of the relative position (m) and velocity (m/s) in the servicer's RTN.
@@ -98,6 +98,7 @@ class NavigationSolution {
   std::size_t maneuver_count_ = 0;
 
   bool uses_camera_ = false;
+  GpsTime handed_over_;  ///< by previous navigation, as a-priori ROE
   std::array<filter::Burn, kMaxManeuvers> burns_{};
 };
 

@@ -218,11 +218,14 @@ Result<DriftSafety> assess_drift(const QnsElements& servicer_mean, const Vector6
 
 namespace {
 
-/// Judges the present drift. With a retreat criterion an unsafe drift does not exclude a plan whose burns leave it, but
-/// until the first of them, or a retreat in its place, the drift must keep the distance.
-double watched_s(const SafetyCriterion& criterion, std::size_t prefix, bool more, double until_next_s) {
-  if (prefix == 0 && more && criterion.retreat) return until_next_s + criterion.retreat->delay;
-  return until_next_s > criterion.horizon ? until_next_s : criterion.horizon;
+/// Returns whether the present drift keeps the distance until the first burn, or until a retreat in its place. Holding
+/// flies this drift too: if it is unsafe later, that does not exclude a plan whose burns leave it before.
+Result<bool> keeps_distance_until(double until_burn_s, const Prefix& now, const SafetyCriterion& criterion) {
+  const double watched = until_burn_s + (criterion.retreat ? criterion.retreat->delay : 0.0);
+  const Result<DriftSafety> drift =
+      assess_drift(now.servicer, orbit::roe_from_qns(now.servicer, now.target), watched, now.bound);
+  if (!drift.ok()) return drift.status();
+  return drift.value().spatial.distance >= criterion.keep_out_radius;
 }
 
 }  // namespace
@@ -236,15 +239,21 @@ Result<PlanSafety> assess_plan(GpsTime start, const QnsElements& servicer_mean, 
              .bound = criterion.bound};
   if (criterion.retreat) now.covariance_m2 = criterion.retreat->covariance_m2;
   PlanSafety worst;
+  bool keeps_distance = true;
   for (std::size_t prefix = 0; prefix <= plan.count; ++prefix) {
     const bool more = prefix < plan.count;
     const double until_next = more ? seconds(plan.burns[prefix].time - now.time) : 0.0;
     if (until_next < 0.0) return Status::kInvalidArgument;
-    const double watched = watched_s(criterion, prefix, more, until_next);
+    const double watched = until_next > criterion.horizon ? until_next : criterion.horizon;
     const Result<DriftSafety> drift =
         assess_drift(now.servicer, orbit::roe_from_qns(now.servicer, now.target), watched, now.bound);
     if (!drift.ok()) return drift.status();
     const DriftSafety& d = drift.value();
+    if (!(d.spatial.distance >= criterion.keep_out_radius)) {
+      const Result<bool> is_left = prefix == 0 && more ? keeps_distance_until(until_next, now, criterion) : false;
+      if (!is_left.ok()) return is_left.status();
+      keeps_distance = keeps_distance && is_left.value();
+    }
     if (prefix == 0 || d.spatial.distance < worst.min_distance) {
       worst.min_distance = d.spatial.distance;
       worst.time = seconds(now.time - start) + d.spatial.time;
@@ -268,7 +277,7 @@ Result<PlanSafety> assess_plan(GpsTime start, const QnsElements& servicer_mean, 
     if (!more) break;
     now.execute(plan.burns[prefix], criterion.burns);
   }
-  worst.safe = worst.min_distance >= criterion.keep_out_radius && worst.allows_retreat;
+  worst.safe = keeps_distance && worst.allows_retreat;
   return worst;
 }
 

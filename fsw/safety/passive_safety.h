@@ -76,7 +76,7 @@ struct SafetyCriterion {
 
 /// Describes the worst drift of a plan. In prefix k the first k burns are executed and the others missed.
 struct PlanSafety {
-  bool safe = false;             ///< min_distance reaches the keep-out radius, and a retreat is possible throughout
+  bool safe = false;             ///< keeps the keep-out radius as assess_plan() states, and can retreat throughout
   double min_distance = 0.0;     ///< m, in space, bound subtracted, over all prefixes
   double min_rn_distance = 0.0;  ///< m, in the RN plane, bound subtracted, over all prefixes
   double time = 0.0;             ///< s after `start`, time of min_distance
@@ -88,8 +88,9 @@ struct PlanSafety {
 };
 
 /// Evaluates the drift after each prefix of the plan's burns (the servicer's, in its RTN), from 0 burns at `start` to
-/// all, for the horizon and at least until the next burn; with a RetreatCriterion the drift before the first burn is
-/// evaluated until the retreat that follows if that burn is missed, since not flying the plan would not end it.
+/// all, for the horizon and at least until the next burn. Each must keep the distance, but the drift before the first
+/// burn only until that burn, with a RetreatCriterion until the retreat that follows if it is missed: not flying the
+/// plan would not end it.
 /// Elements and ROE hold at `start`. kInvalidArgument unless the burns are in order of time and none before `start`;
 /// errors of assess_drift. A plan that cannot be assessed is unsafe.
 Result<PlanSafety> assess_plan(GpsTime start, const orbit::QnsElements& servicer_mean, const Vector6& mean_roe,

@@ -66,6 +66,13 @@ class Experiment2(unittest.TestCase):
             far += math.sqrt(sum(squares) / 3) > 8
         self.assertLess(far, 0.05 * len(estimates))
 
+    def test_the_leg_is_planned_on_what_was_handed_over(self):
+        """A leg of an hour that waits for the end of the dark costs a quarter more."""
+        with (self.reference_folder / "maneuvers.csv").open() as file:
+            first = float(next(csv.DictReader(file))["execution_time_s"])
+        start = float(self.poses[0]["time_s"])
+        self.assertLess(first - start, 60.0)
+
     def test_in_process_again(self):
         self.fly_again()
 
