@@ -15,6 +15,7 @@
 #include "host_sim/report/sections/sections.h"
 #include "host_sim/report/statistics.h"
 #include "host_sim/report/verdict.h"
+#include "host_sim/report/words.h"
 
 namespace vbar::report {
 
@@ -88,6 +89,9 @@ std::string overview(const RunRecord& record) {
   std::string out = fmt::format("<h1>{}</h1>\n<p class=\"lead\">seed {}, flown on {}{}{}</p>\n", escaped(s.mission),
                                 s.seed, escaped(s.flight_computer), with.empty() ? "" : "; ", escaped(with));
   out += status(s);
+  for (const std::string& testbed : emulated_testbeds(s))
+    out +=
+        badge("caution", "emulated bench", fmt::format("The testbed {} was emulated; no hardware was used.", testbed));
   out += tiles(record);
   std::vector<Fact> facts;
   for (const std::string& note : s.data_notes) facts.push_back({"data", note, true});
