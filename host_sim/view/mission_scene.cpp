@@ -76,6 +76,8 @@ json camera_of(const mission::Sensor& sensor, const sensors::CameraSensor& camer
   return {{"name", sensor.name},
           {"q_camera_body", {q.w(), q.x(), q.y(), q.z()}},
           {"position_body_m", triple(camera.position_body_m)},
+          {"focal_length_px", focal_px},
+          {"principal_point_px", camera.settings.optics.principal_point_px},
           {"tan_half_width", 0.5 * detector.width / focal_px},
           {"tan_half_height", 0.5 * detector.height / focal_px}};
 }

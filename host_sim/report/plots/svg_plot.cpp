@@ -62,6 +62,7 @@ std::vector<double> values_of(const Plot& plot, double Point::*coordinate, bool 
 struct Scale {
   Range range;
   DisplayUnit unit;
+  Unit quantity = Unit::kNone;
   bool logarithmic = false;
   double start = 0.0, length = 0.0;  // pixels; a negative length runs upwards
 
@@ -102,10 +103,24 @@ void make_same_scale(Scale& x, Scale& y) {
   narrow.range = {narrow.range.centre() - half, narrow.range.centre() + half};
 }
 
+/// From kilometres to millimetres each tick states its own unit, and the axis none.
+bool writes_units(const Scale& scale) {
+  if (!scale.logarithmic || (scale.quantity != Unit::kMetres && scale.quantity != Unit::kMetresPerSecond)) return false;
+  const auto unit_at = [&](double shown) { return display_unit(scale.quantity, shown / scale.unit.per_si).symbol; };
+  return scale.range.high / scale.range.low > 1e3 && unit_at(scale.range.low) != unit_at(scale.range.high);
+}
+
 std::vector<Tick> ticks_of(const Scale& scale, double pixels_a_tick) {
   const int count = std::max(2, static_cast<int>(std::abs(scale.length) / pixels_a_tick));
   const bool decades = scale.logarithmic && scale.range.high / scale.range.low > 10.0;
-  return decades ? decade_ticks(scale.range, count) : linear_ticks(scale.range, count);
+  std::vector<Tick> ticks = decades ? decade_ticks(scale.range, count) : linear_ticks(scale.range, count);
+  if (writes_units(scale))
+    for (Tick& tick : ticks) {
+      const double si = tick.value / scale.unit.per_si;
+      const DisplayUnit unit = display_unit(scale.quantity, si);
+      tick.text = fmt::format("{:g} {}", unit.per_si * si, unit.symbol);
+    }
+  return ticks;
 }
 
 /// Draws one plot: `out` grows by an element at a time.
@@ -144,6 +159,8 @@ class Drawing {
   void settle_scales() {
     x_.range = settled_range(plot_.x, values_of(plot_, &Point::x, plot_.x.logarithmic));
     y_.range = settled_range(plot_.y, values_of(plot_, &Point::y, plot_.y.logarithmic));
+    x_.quantity = plot_.x.unit;
+    y_.quantity = plot_.y.unit;
     x_.logarithmic = plot_.x.logarithmic;
     y_.logarithmic = plot_.y.logarithmic;
     y_.start = plot_.height - kBottomMargin;
@@ -183,7 +200,7 @@ class Drawing {
   }
 
   static std::string axis_text(const Axis& axis, const Scale& scale) {
-    if (scale.unit.symbol.empty()) return escaped(axis.name);
+    if (scale.unit.symbol.empty() || writes_units(scale)) return escaped(axis.name);
     return fmt::format("{}, {}", escaped(axis.name), scale.unit.symbol);
   }
 

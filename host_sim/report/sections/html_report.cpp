@@ -56,7 +56,7 @@ std::string html_report(const RunRecord& record, std::string_view note) {
     if (extension->sections == nullptr) continue;
     for (Section& section : extension->sections(record)) sections.push_back(std::move(section));
   }
-  for (auto* const section : {attitude_section, guidance_section, health_section, computer_section})
+  for (auto* const section : {attitude_section, guidance_section, health_section, computer_section, flown_section})
     sections.push_back(section(record));
   std::string body = overview(record);
   if (!note.empty()) body += fmt::format("<p>{}</p>\n", note);

@@ -1,5 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -34,14 +38,26 @@ struct Component {
   [[nodiscard]] double bound(const NavigationError& e) const { return 3.0 * e.sigma_rtn[axis + (velocity ? 3 : 0)]; }
 };
 
-/// Returns the range of what comes once navigation has settled: before, errors are a thousand times as large.
-Range settled_range(const std::vector<NavigationError>& all, const View& view, double from_s, const Component& what) {
+/// The largest error or bound of a view from a time on.
+double largest_from(const std::vector<NavigationError>& all, const View& view, double from_s, const Component& what) {
   double largest = 0.0;
   for (const NavigationError& e : all) {
     if (e.time_s >= from_s && view.holds(e.time_s))
       largest = std::max({largest, std::abs(what.error(e)), what.bound(e)});
   }
-  return {-1.1 * largest, 1.1 * largest};
+  return largest;
+}
+
+/// Returns the range of what comes once navigation has settled, after an eighth of the view or the first fix, where
+/// errors before are several times as large; none where they are not.
+std::optional<Range> settled_range(const RunRecord& record, const std::vector<NavigationError>& all, const View& view,
+                                   const Component& what) {
+  constexpr double kSettling = 0.125, kSeveral = 3.0;
+  const bool has_fix = first_fix(record).has_value();
+  const double from_s = has_fix ? settled_from(record, view) : view.start_s + kSettling * (view.end_s - view.start_s);
+  const double settled = largest_from(all, view, from_s, what);
+  if (!has_fix && largest_from(all, view, view.start_s, what) < kSeveral * settled) return std::nullopt;
+  return settled > 0.0 ? std::optional(Range{-1.1 * settled, 1.1 * settled}) : std::nullopt;
 }
 
 Plot error_plot(const RunRecord& record, const std::vector<NavigationError>& all, const View& view,
@@ -50,13 +66,28 @@ Plot error_plot(const RunRecord& record, const std::vector<NavigationError>& all
   Plot plot =
       time_plot(view, fmt::format("{} error {}, {}", what.velocity ? "Velocity" : "Position", axis, view.name),
                 fmt::format("{} error", axis), what.velocity ? Unit::kMetresPerSecond : Unit::kMetres, 220.0, &record);
-  if (first_fix(record)) plot.y.range = settled_range(all, view, settled_from(record, view), what);
+  plot.y.range = settled_range(record, all, view, what);
   const auto error = [&](const NavigationError& e) { return what.error(e); };
   const auto bound = [&](const NavigationError& e) { return what.bound(e); };
   plot.series = {{"estimate minus truth", 0, Mark::kLine, over_time(all, view, error)},
                  {"3σ of the filter", 1, Mark::kDashedLine, over_time(all, view, bound)},
                  {"", 1, Mark::kDashedLine, over_time(all, view, [&](const NavigationError& e) { return -bound(e); })}};
   return plot;
+}
+
+/// A sentence where a view has no estimate, or none in its last part.
+std::string missing_estimates(const std::vector<NavigationError>& all, const View& view) {
+  constexpr double kNoticed = 0.02;  // of the view
+  double last_s = view.start_s;
+  bool is_any = false;
+  for (const NavigationError& e : all) {
+    if (!view.holds(e.time_s)) continue;
+    last_s = e.time_s;
+    is_any = true;
+  }
+  if (!is_any) return fmt::format("<p class=\"caution\">No estimate, {}.</p>\n", view.name);
+  if (view.end_s - last_s < kNoticed * (view.end_s - view.start_s)) return {};
+  return fmt::format("<p class=\"caution\">No estimate after {:.2f} h, {}.</p>\n", hours(last_s), view.name);
 }
 
 std::string error_plots(const RunRecord& record) {
@@ -67,12 +98,18 @@ std::string error_plots(const RunRecord& record) {
                        all.size());
   }
   std::vector<Plot> plots;
+  std::string missing;
   for (const View& view : mission_views(record)) {
+    missing += missing_estimates(all, view);
+    if (std::ranges::none_of(all, [&](const NavigationError& e) { return view.holds(e.time_s); })) continue;
     for (const bool velocity : {false, true}) {
       for (std::size_t axis = 0; axis < 3; ++axis) plots.push_back(error_plot(record, all, view, {axis, velocity}));
     }
   }
-  return kPlotNote + plot_rows(3, std::move(plots));
+  return missing + kPlotNote +
+         "<p class=\"note\">Where the first errors of a plot are several times those that follow, its axis shows what "
+         "follows.</p>\n" +
+         plot_rows(3, std::move(plots));
 }
 
 }  // namespace

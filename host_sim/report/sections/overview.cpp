@@ -15,6 +15,7 @@
 #include "host_sim/report/sections/sections.h"
 #include "host_sim/report/statistics.h"
 #include "host_sim/report/verdict.h"
+#include "host_sim/report/words.h"
 
 namespace vbar::report {
 
@@ -61,6 +62,14 @@ std::string or_none(const std::string& text) {
   return text.empty() ? "none" : text;
 }
 
+/// What navigation had: "angles_only, camera digital".
+std::string flown_with(const Summary& s) {
+  std::string text = s.navigation.empty() ? "" : fmt::format("navigation {}", s.navigation);
+  for (const auto& [name, kind] : {std::pair{"camera", s.camera}, std::pair{"GNSS", s.gnss}})
+    if (!kind.empty()) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, kind);
+  return text;
+}
+
 /// Appends nothing for a folder of an older version, which has no provenance.
 void append_provenance(const Provenance& provenance, std::vector<Fact>& facts) {
   if (provenance.vbar_version.empty()) return;
@@ -76,23 +85,16 @@ void append_provenance(const Provenance& provenance, std::vector<Fact>& facts) {
 
 std::string overview(const RunRecord& record) {
   const Summary& s = record.summary;
-  std::string out = fmt::format("<h1>{}</h1>\n<p class=\"lead\">seed {}, flown on {}</p>\n", escaped(s.mission), s.seed,
-                                escaped(s.flight_computer));
+  const std::string with = flown_with(s);
+  std::string out = fmt::format("<h1>{}</h1>\n<p class=\"lead\">seed {}, flown on {}{}{}</p>\n", escaped(s.mission),
+                                s.seed, escaped(s.flight_computer), with.empty() ? "" : "; ", escaped(with));
   out += status(s);
+  for (const std::string& testbed : emulated_testbeds(s))
+    out +=
+        badge("caution", "emulated bench", fmt::format("The testbed {} was emulated; no hardware was used.", testbed));
   out += tiles(record);
-  std::vector<Fact> facts{{"flight computer", s.flight_computer},
-                          {"flight software", s.flight_software},
-                          {"navigation", or_none(s.navigation)},
-                          {"camera", or_none(s.camera)},
-                          {"GNSS", or_none(s.gnss)},
-                          {"seed", std::to_string(s.seed)},
-                          {"commands SHA-256", s.commands_sha256},
-                          {"telemetry SHA-256", s.telemetry_sha256}};
+  std::vector<Fact> facts;
   for (const std::string& note : s.data_notes) facts.push_back({"data", note, true});
-  append_provenance(s.provenance, facts);
-  for (const SourceFigures& source : s.sources)
-    if (source.name == "truth")
-      facts.push_back({"truth", fmt::format("of testbed {}, {} answers", source.kind, source.epochs)});
   for (const SourceFigures& source : s.sources)
     if (source.failures > 0)
       facts.push_back({"failures of " + source.name, fmt::format("{} of {} epochs; the last: {}", source.failures,
@@ -101,7 +103,24 @@ std::string overview(const RunRecord& record) {
     if (source.packets_rejected > 0)
       facts.push_back({"packets of " + source.name,
                        fmt::format("{} of impossible times or values were rejected", source.packets_rejected), true});
-  return out + fact_list(facts) + "<p class=\"files\">Data: <a href=\"summary.json\">summary.json</a></p>\n";
+  return facts.empty() ? out : out + fact_list(facts);
+}
+
+Section flown_section(const RunRecord& record) {
+  const Summary& s = record.summary;
+  std::vector<Fact> facts{{"flight computer", s.flight_computer},
+                          {"flight software", s.flight_software},
+                          {"navigation", or_none(s.navigation)},
+                          {"camera", or_none(s.camera)},
+                          {"GNSS", or_none(s.gnss)},
+                          {"seed", std::to_string(s.seed)},
+                          {"commands SHA-256", s.commands_sha256},
+                          {"telemetry SHA-256", s.telemetry_sha256}};
+  append_provenance(s.provenance, facts);
+  for (const SourceFigures& source : s.sources)
+    if (source.name == "truth")
+      facts.push_back({"truth", fmt::format("of testbed {}, {} answers", source.kind, source.epochs)});
+  return {"What was flown", fact_list(facts), {"summary.json"}};
 }
 
 // The whole run in one figure: how far, how well known, by which sources, with which burns.

@@ -17,8 +17,11 @@
 
 namespace vbar::report {
 
-/// Mission, flight software, speed and end of the run (overview.cpp).
+/// Mission, end of the run, its figures, and what failed (overview.cpp).
 [[nodiscard]] std::string overview(const RunRecord& record);
+
+/// Flight software, seed, checksums, commit and computer: what identifies the run (overview.cpp).
+[[nodiscard]] Section flown_section(const RunRecord& record);
 
 /// Distance, accuracy, aiding sources and maneuvers of the whole run (overview.cpp).
 [[nodiscard]] Section glance_section(const RunRecord& record);

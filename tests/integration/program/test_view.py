@@ -250,6 +250,41 @@ class ViewInBrowser(unittest.TestCase):
             self.assertAlmostEqual(page.evaluate("vbarView.scene.target.position.length()"),
                                    page.evaluate("vbarView.valuesAt(vbarView.cursor.t).rows[0].truth"), 6)
 
+    def test_a_plot_states_how_often_its_error_is_within_three_sigma(self):
+        truth, estimate = file_of(self.run_folder / "truth.csv"), file_of(self.run_folder / "estimate.csv")
+        true = dict(zip(map(float, truth["time_s"]), map(float, truth["relative_position_rtn_r_m"])))
+        rows = [(abs(float(x) - true[float(t)]), float(s)) for t, x, s in
+                zip(estimate["time_s"], estimate["relative_position_rtn_r_m"], estimate["sigma_rtn_r_m"]) if x and float(t) in true]
+        share = 100 * sum(error <= 3 * sigma for error, sigma in rows) / len(rows)
+        with browser.browser() as page:
+            page.show()
+            page.open(self.address + "#tab=navigation")
+            title = page.evaluate("document.querySelector('.u-title').innerText")
+            self.assertTrue(title.startswith("R position error"), title)
+            self.assertAlmostEqual(float(re.search(r"in 3σ ([0-9.]+) %", title)[1]), share, 0)
+
+    def test_the_time_bar_explains_what_is_under_the_pointer(self):
+        burn = file_of(self.run_folder / "maneuvers.csv")
+        k = next(row for row, size in enumerate(burn["executed_dv_rtn_t_mps"]) if size)
+        time_s = float(burn["execution_time_s"][k])
+        size = sum(float(burn[f"executed_dv_rtn_{axis}_mps"][k]) ** 2 for axis in "rtn") ** 0.5
+        with browser.browser() as page:
+            page.show()
+            page.open(self.address)
+            page.point(*page.evaluate(f"vbarView.timeBar.placeOf('burns', {time_s})"))
+            note = page.evaluate("document.querySelector('.pointed').innerText")
+            value, unit, hours = re.search(r"burn of ([0-9.]+) (m/s|mm/s|µm/s) at ([0-9.]+) h", note).groups()
+            self.assertAlmostEqual(float(value) * {"m/s": 1, "mm/s": 1e-3, "µm/s": 1e-6}[unit] / size, 1, 3)
+            self.assertAlmostEqual(float(hours), time_s / 3600, 4)
+
+    def test_a_run_without_cameras_has_no_view_through_one(self):
+        with browser.browser() as page:
+            page.show()
+            page.open(self.address + "#view=camera")
+            self.assertFalse(page.evaluate("vbarView.scene.through"))
+            self.assertTrue(page.evaluate("vbarView.scene.servicer.visible"))
+            self.assertEqual(page.errors, [])
+
     def test_without_webgl_plots_and_numbers_stand(self):
         with browser.browser("--disable-gpu", "--disable-3d-apis") as page:
             page.show()

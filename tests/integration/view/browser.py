@@ -85,9 +85,14 @@ class Page:
             performance.now() - begin > {1000 * seconds} ? reject(new Error((document.body?.innerText ?? "").slice(0, 300))) : setTimeout(look, 20);
           look(); }})""")
 
-    def picture(self, file):
+    def point(self, x, y):
+        self.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y)
+
+    def picture(self, file, part=None):
+        """Writes what is shown, or a part of the whole page: {x, y, width, height}."""
+        clip = {"clip": part | {"scale": 1}, "captureBeyondViewport": True} if part else {}
         with open(file, "wb") as out:
-            out.write(base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"]))
+            out.write(base64.b64decode(self.call("Page.captureScreenshot", format="png", **clip)["data"]))
 
 
 @contextlib.contextmanager

@@ -134,7 +134,7 @@ function columnChooser(runs, ids, change) {
 }
 
 function plotsOf(place, runs, cursor, link) {
-  const area = make('div', { class: 'plots' }), plots = new Plots(area, cursor);
+  const area = make('div', { class: 'plots' }), plots = new Plots(area, cursor, runs[0].eclipses);
   const selected = new Set((link.get('plot') ?? '').split(',').filter((id) => runs[0].column(id)));
   const showSelected = () => { link.set('plot', [...selected].join(',')); plots.show(selectedPlots(runs, [...selected]), 'Select columns of the list; the address keeps them.'); };
   const chooser = columnChooser(runs, selected, showSelected);
@@ -182,7 +182,7 @@ async function start() {
   const notes = [run.note, ...(run.scene?.notes ?? [])].filter(Boolean);
   if (notes.length) side.append(make('p', { class: 'warning', text: `The mission of this run could not be read in full: ${notes.join('; ')}` }));
   new Numbers(side, run, cursor);
-  new Picture(pictureElement, run, cursor);
+  new Picture(pictureElement, run, cursor, link);
   const timeBar = new TimeBar(bar, run, cursor);
   const choose = plotsOf(plotElement, runs, cursor, link);
   const { view, scene } = await sceneOf(sceneElement, runs, motions, cursor, link);
@@ -200,7 +200,7 @@ async function start() {
   if (live) cursor.set(cursor.end);
 
   // For scripts and tests: the state of the page, the cells of the tables, the values shown.
-  window.vbarView = { runs, cursor, scene, motions, choose, valuesAt: (t) => valuesAt(run, t), rangeAt: (t) => norm(motions[0].frameAt(t).rho) };
+  window.vbarView = { runs, cursor, scene, timeBar, motions, choose, valuesAt: (t) => valuesAt(run, t), rangeAt: (t) => norm(motions[0].frameAt(t).rho) };
   requestAnimationFrame(() => { document.documentElement.dataset.ready = 'yes'; });  // after the first frame of the scene
 }
 

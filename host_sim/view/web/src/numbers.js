@@ -6,10 +6,19 @@ import { number, withUnit } from './units.js';
 const kVectors = [['relative_position_rtn', 'm', 'm', ''], ['relative_velocity_rtn', 'mps', 'm/s', ' vel.']];
 const kElements = [['da', 'a δa'], ['dlambda', 'a δλ'], ['dex', 'a δex'], ['dey', 'a δey'], ['dix', 'a δix'], ['diy', 'a δiy']];
 
+/** The state of each source of navigation that was ever on, as [name, state]. */
+function aidsAt(run, t) {
+  const table = run.table('telemetry_event'), states = new Map();
+  if (!table) return [];
+  const [event, device, after] = ['event', 'device', 'after'].map((name) => table.cells(name));
+  for (let k = 0; k <= table.rowAt(t); ++k) if (event[k] === 'aid') states.set(device[k], after[k]);
+  return [...states].filter(([, state]) => state !== 'off' && state !== 'waiting').map(([name, state]) => [`Aid: ${name.replaceAll('_', ' ')}`, state]);
+}
+
 /** Values of the rows at the cursor: what the page shows and what a test compares with the files. */
 export function valuesAt(run, t) {
-  const at = (table) => { const found = run.table(table); const row = found?.rowAt(t) ?? -1; return (name) => (row < 0 ? undefined : found.column(name)?.cells[row]); };
-  const value = (cell) => (cell === undefined || cell === '' ? NaN : Number(cell));
+  const at = (table) => { const found = run.table(table); const row = found?.rowAt(t) ?? -1; return (name, as = 'numbers') => (row < 0 ? undefined : found.column(name)?.[as][row]); };
+  const value = (number) => number ?? NaN;
   const truth = at('truth'), estimate = at('estimate'), sunlight = at('sunlight');
   const rows = [];
   const components = (of) => ['r', 't', 'n'].map((a) => value(of(`relative_position_rtn_${a}_m`)));
@@ -24,11 +33,13 @@ export function valuesAt(run, t) {
     const [x, e] = [value(truth(`a_roe_mean_${element}_m`)), value(estimate(`a_roe_mean_${element}_m`))];
     rows.push({ name, unit: 'm', truth: x, estimate: e, error: e - x, column: `truth.a_roe_mean_${element}_m` });
   }
-  const words = [['Mode', estimate('mode')], ['Solver', estimate('active_solver')], ['Source', estimate('navigation_source')],
-                 ['Next waypoint', estimate('waypoint_index')], ['Burns planned', estimate('planned_burns')], ['Delta-v so far', withUnit(value(estimate('commanded_dv_mps')), 'm/s')],
-                 ['Sunlight', sunlight('servicer_sunlit') === undefined ? undefined : `${number(100 * value(sunlight('servicer_sunlit')), 3)} %`],
-                 ['Faults present', at('telemetry_health')('faults_present')]];
-  return { rows, words: words.filter(([, word]) => word !== undefined && word !== '') };
+  const word = (name) => estimate(name, 'cells');
+  const words = [['Mode', word('mode')], ['Solver', word('active_solver')], ['Source', word('navigation_source')],
+                 ...aidsAt(run, t), ['Image', at('images')('status', 'cells')], ['Pose', at('poses')('status', 'cells')],
+                 ['Next waypoint', word('waypoint_index')], ['Burns planned', word('planned_burns')], ['Delta-v so far', withUnit(value(estimate('commanded_dv_mps')), 'm/s')],
+                 ['Sunlight', Number.isNaN(value(sunlight('servicer_sunlit'))) ? undefined : `${number(100 * value(sunlight('servicer_sunlit')), 3)} %`],
+                 ['Faults present', at('telemetry_health')('faults_present', 'cells')]];
+  return { rows, words: words.filter(([, shown]) => shown !== undefined && shown !== '') };
 }
 
 const element = (tag, text, kind) => { const made = document.createElement(tag); made.textContent = text; if (kind) made.className = kind; return made; };
@@ -44,7 +55,7 @@ export class Numbers {
     const body = this.table.createTBody();
     this.rows = rows.map((row) => { const made = body.insertRow(); made.append(element('th', row.name)); return [0, 1, 2, 3].map(() => made.insertCell()); });
     this.facts = element('dl', '', 'facts');
-    this.place.append(this.table, this.facts);
+    this.place.append(this.facts, this.table);
     this.table.addEventListener('click', (event) => { const raw = event.target.dataset?.raw; if (raw) { navigator.clipboard?.writeText(raw); event.target.classList.add('copied'); setTimeout(() => event.target.classList.remove('copied'), 500); } });
     cursor.onChange((t) => this.show(t));
     this.show(cursor.t);
@@ -54,11 +65,11 @@ export class Numbers {
     const { rows, words } = valuesAt(this.run, t);
     rows.forEach((row, k) => [row.truth, row.estimate, row.error, row.sigma3].forEach((value, c) => {
       const cell = this.rows[k][c], shown = Number.isFinite(value);
-      cell.textContent = shown ? withUnit(value, row.unit, c < 2 ? 5 : 4) : value === undefined ? '' : '–';
+      cell.textContent = shown ? withUnit(value, row.unit, c < 2 && row.unit === 'm' ? 5 : 4) : value === undefined ? '' : '–';
       cell.title = shown ? `${value} ${row.unit} (click to copy)` : '';
       cell.dataset.raw = shown ? String(value) : '';
       cell.classList.toggle('beyond', c === 2 && Math.abs(value) > row.sigma3);
     }));
-    this.facts.replaceChildren(...words.flatMap(([name, word]) => [element('dt', name), element('dd', word)]));
+    this.facts.replaceChildren(...words.flatMap(([name, word]) => [element('dt', name), element('dd', word.replaceAll('_', ' '))]));
   }
 }

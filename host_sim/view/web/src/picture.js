@@ -4,9 +4,10 @@ import { hours } from './units.js';
 
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const kKinds = { target: '--bad', star: '--c0', unmatched: '--c3', hot_pixel: '--c5' };
+const kFates = { used: '--c2', without_filter: '--c2', rejected: '--bad' };  // of keypoints
 
 export class Picture {
-  constructor(element, run, cursor) {
+  constructor(element, run, cursor, link) {
     Object.assign(this, { element, run, cursor });
     element.hidden = run.pictures.length === 0;
     if (element.hidden) return;
@@ -16,6 +17,9 @@ export class Picture {
     const frame = document.createElement('div');
     frame.className = 'frame';
     frame.append(this.image, this.canvas);
+    frame.title = 'larger, or small again';
+    frame.addEventListener('click', () => this.#enlarge(!this.large));
+    this.link = link;
     this.caption = document.createElement('p');
     this.buttons = ['‹', '›'].map((sign, k) => {
       const button = document.createElement('button');
@@ -28,6 +32,7 @@ export class Picture {
     row.className = 'pictureRow';
     row.append(this.buttons[0], this.caption, this.buttons[1]);
     element.append(row, frame);
+    this.#enlarge(link.get('picture') === 'large');
     this.image.addEventListener('load', () => this.#mark());
     cursor.onChange((t) => this.show(t));
     this.show(cursor.t);
@@ -38,6 +43,13 @@ export class Picture {
     let found = 0;
     this.run.pictures.forEach((picture, k) => { if (picture.time_s <= t + 1e-9) found = k; });
     return found;
+  }
+
+  /** Gives the picture the place of the scene, or takes it back. */
+  #enlarge(large) {
+    this.large = large;
+    this.element.parentElement.classList.toggle('largePicture', large);
+    this.link.set('picture', large ? 'large' : '');
   }
 
   #go(count) {
@@ -78,7 +90,21 @@ export class Picture {
         g.stroke();
       }
     }
+    this.#markKeypoints(g, picture);
     const [left, side] = picture.crop_px;
     if (side > 0) { g.strokeStyle = css('--c2'); g.strokeRect(left, 0, side, side); }
+  }
+
+  /** Crosses at the keypoints of the picture: green where navigation used them, red where it rejected them. */
+  #markKeypoints(g, picture) {
+    const keypoints = this.run.table('keypoints');
+    if (!keypoints) return;
+    const [image, x, y] = keypoints.vector('image', 'x_px', 'y_px'), fates = keypoints.cells('fate'), arm = 5;
+    for (let row = 0; row < keypoints.rows; ++row) {
+      if (image[row] !== picture.image || !kFates[fates[row]]) continue;
+      const [u, v] = [x[row] - picture.origin_px[0], y[row] - picture.origin_px[1]];
+      g.strokeStyle = css(kFates[fates[row]]);
+      g.beginPath(); g.moveTo(u - arm, v); g.lineTo(u + arm, v); g.moveTo(u, v - arm); g.lineTo(u, v + arm); g.stroke();
+    }
   }
 }

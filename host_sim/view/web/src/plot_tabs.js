@@ -3,9 +3,10 @@
 
 import { norm } from './frames.js';
 import { indexAt } from './run_data.js';
-import { unitOf } from './units.js';
+import { number, unitOf } from './units.js';
 
 const kAxes = ['r', 't', 'n'], kElements = ['da', 'dlambda', 'dex', 'dey', 'dix', 'diy'];
+const kTrue = { width: 3.5 };  // under the estimate, and visible beside it
 const kElementNames = ['a δa', 'a δλ', 'a δex', 'a δey', 'a δix', 'a δiy'];
 
 // A gap is null: a NaN would leave the whole curve and its scale empty.
@@ -39,13 +40,21 @@ function errors(run, stem, axis, unit) {
 }
 
 function relativePlots(run) {
-  const range = computed(run, 'truth', kAxes.map((a) => `relative_position_rtn_${a}_m`), norm, 'true', 'c0');
+  const range = computed(run, 'truth', kAxes.map((a) => `relative_position_rtn_${a}_m`), norm, 'true', 'c0', kTrue);
   const estimated = computed(run, 'estimate', kAxes.map((a) => `relative_position_rtn_${a}_m`), norm, 'estimated', 'c1');
   const component = (stem, unitName) => kAxes.map((a) => [
-    ...column(run, 'truth', `${stem}_${a}_${unitName}`, 'true', 'c0'), ...column(run, 'estimate', `${stem}_${a}_${unitName}`, 'estimated', 'c1')]);
+    ...column(run, 'truth', `${stem}_${a}_${unitName}`, 'true', 'c0', kTrue), ...column(run, 'estimate', `${stem}_${a}_${unitName}`, 'estimated', 'c1')]);
   return [{ title: 'Range', unit: 'm', log: true, curves: [...range, ...estimated] },
           ...component('relative_position_rtn', 'm').map((curves, k) => ({ title: `${kAxes[k].toUpperCase()} of the target`, unit: 'm', curves })),
           ...component('relative_velocity_rtn', 'mps').map((curves, k) => ({ title: `${kAxes[k].toUpperCase()} velocity`, unit: 'm/s', curves }))];
+}
+
+/** How often errors are within three sigma: "in 3σ 99.2 %, in eclipse 98.0 %". */
+function withinText(run, error, sigma) {
+  const within = [...error.values.keys()].filter((k) => Number.isFinite(error.values[k]) && sigma[k] > 0);
+  const share = (rows) => `${number((100 * rows.filter((k) => Math.abs(error.values[k]) <= 3 * sigma[k]).length) / rows.length, 3)} %`;
+  const shaded = within.filter((k) => run.eclipses.some(({ begin, end }) => error.time[k] >= begin && error.time[k] < end));
+  return within.length ? `: in 3σ ${share(within)}${shaded.length ? `, in eclipse ${share(shaded)}` : ''}` : '';
 }
 
 function navigationPlots(run) {
@@ -55,7 +64,7 @@ function navigationPlots(run) {
       const error = errors(run, stem, a, unitName), sigma = run.table('estimate')?.numbers(`sigma_rtn_${a}_${unitName}`);
       if (!error || !error.values.some(Number.isFinite)) continue;
       const bound = (sign) => sigma ? [curve(sign > 0 ? '+3σ' : '−3σ', 'c5', error.time, sigma.map((s) => sign * 3 * s), { band: true, width: 1 })] : [];
-      plots.push({ title: `${a.toUpperCase()} ${what}`, unit, clip: true, curves: [...bound(1), ...bound(-1), curve('error', 'c1', error.time, error.values)] });
+      plots.push({ title: `${a.toUpperCase()} ${what}`, note: sigma ? withinText(run, error, sigma) : '', unit, clip: true, curves: [...bound(1), ...bound(-1), curve('error', 'c1', error.time, error.values)] });
     }
   }
   return plots;
@@ -63,7 +72,7 @@ function navigationPlots(run) {
 
 function elementPlots(run) {
   return kElements.map((element, k) => ({ title: kElementNames[k], unit: 'm', curves: [
-    ...column(run, 'truth', `a_roe_mean_${element}_m`, 'true', 'c0'), ...column(run, 'estimate', `a_roe_mean_${element}_m`, 'estimated', 'c1'),
+    ...column(run, 'truth', `a_roe_mean_${element}_m`, 'true', 'c0', kTrue), ...column(run, 'estimate', `a_roe_mean_${element}_m`, 'estimated', 'c1'),
     ...column(run, 'estimate', `a_roe_desired_${element}_m`, 'desired', 'c2', { step: true })] }));
 }
 

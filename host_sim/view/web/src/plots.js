@@ -23,16 +23,18 @@ function sizes(curves) {
   return { most, least };
 }
 
-/** A range about zero that the largest of a hundred values may leave: the first seconds of a filter would hide all others. */
+/** A range about zero that the largest twentieth of the values may leave: the first hour of a filter would hide all others. */
 function clipped(curves) {
   const values = curves.flatMap((c) => c.y.filter((y) => y !== null).map(Math.abs)).sort((a, b) => a - b);
-  const most = 1.3 * values[Math.floor(0.985 * (values.length - 1))];
+  const most = 1.3 * values[Math.floor(0.95 * (values.length - 1))];
   return most > 0 && values.at(-1) > 3 * most ? [-most, most] : undefined;
 }
 
 export class Plots {
-  constructor(element, cursor) {
+  /** `eclipses`: intervals that are grey in all plots. */
+  constructor(element, cursor, eclipses) {
     this.element = element;
+    this.eclipses = eclipses;
     this.cursor = cursor;
     this.plots = [];
     cursor.onChange((t) => this.#mark(t));
@@ -55,7 +57,7 @@ export class Plots {
     setTimeout(() => this.#mark(this.cursor.t));  // the plots have their scales then
   }
 
-  #make({ title, unit, curves, log, clip }) {
+  #make({ title, note = '', unit, curves, log, clip }) {
     const { most, least } = sizes(curves), cut = clip && clipped(curves);
     const { factor, name } = unitFor(unit, cut ? cut[1] : most), useLog = log && most > 100 * least;
     const scaledCurves = curves.map((c) => ({ ...c, y: factor === 1 ? c.y : c.y.map((y) => (y === null ? null : y * factor)) }));
@@ -67,15 +69,24 @@ export class Plots {
     const bands = scaledCurves[0]?.band && scaledCurves[1]?.band ? [{ series: [1, 2], fill: css('--band') }] : [];
     const axis = { stroke: css('--muted'), grid: { stroke: css('--grid'), width: 1 }, ticks: { stroke: css('--grid'), width: 1, size: 4 }, font: '11px system-ui, sans-serif' };
     const plot = new uPlot({
-      title: `${title}${name ? `, ${name}` : ''}${cut ? ` (largest ${withUnit(most, unit, 3)})` : ''}`, width: 380, height: kHeight, series: [{ label: 'h', value: (_, v) => (v === null || v === undefined ? '–' : v.toFixed(4)) }, ...series], bands,
+      title: `${title}${name ? `, ${name}` : ''}${cut ? ` (to ${withUnit(most, unit, 3)})` : ''}${note}`, width: 380, height: kHeight, series: [{ label: 'h', value: (_, v) => (v === null || v === undefined ? '–' : v.toFixed(4)) }, ...series], bands,
       scales: { x: { time: false, range: (_, min, max) => (max > min ? [min, max] : [min - 1, max + 1]) }, y: useLog ? { distr: 3 } : cut ? { range: cut.map((y) => y * factor) } : {} },
       axes: [{ ...axis, size: 24, values: (_, ticks) => ticks.map((t) => `${+t.toFixed(6)} h`) }, { ...axis, size: 58, values: useLog ? (_, ticks) => ticks.map((v) => (v === null ? '' : `${+v.toPrecision(3)}`)) : undefined }],
       cursor: { y: false, drag: { x: true, y: false } }, legend: { live: true },
-      hooks: { setCursor: [(u) => this.#point(u)], setScale: [(u, key) => key === 'x' && this.#zoom(u)] },
+      hooks: { drawClear: [(u) => this.#shade(u)], setCursor: [(u) => this.#point(u)], setScale: [(u, key) => key === 'x' && this.#zoom(u)] },
     }, data, this.element);
     plot.over.addEventListener('mouseenter', () => { this.pointed = plot; });
     plot.over.addEventListener('mouseleave', () => { this.pointed = undefined; this.#mark(this.cursor.t); });
     return plot;
+  }
+
+  #shade(plot) {
+    const { left, top, width, height } = plot.bbox, g = plot.ctx;
+    g.fillStyle = css('--shade');
+    for (const { begin, end } of this.eclipses) {
+      const [from, to] = [begin, end].map((t) => Math.min(Math.max(plot.valToPos(t / 3600, 'x', true), left), left + width));
+      g.fillRect(from, top, to - from, height);
+    }
   }
 
   #point(plot) {

@@ -128,6 +128,17 @@ export class Run {
     const dot = id.indexOf('.');
     return this.table(id.slice(0, dot))?.column(id.slice(dot + 1));
   }
+  /** Intervals [{begin, end, word}] in which the servicer sees less than half of the Sun. */
+  get eclipses() {
+    const table = this.table('sunlight'), fraction = table?.numbers('servicer_sunlit'), found = [];
+    fraction?.forEach((f, k) => {
+      if (f > 0.5) return;
+      const end = table.time[Math.min(k + 1, table.rows - 1)];
+      if (found.length && found.at(-1).row === k - 1) Object.assign(found.at(-1), { row: k, end });
+      else found.push({ begin: table.time[k], end, row: k, word: 'eclipse' });
+    });
+    return found;
+  }
   get start() { return this.table('truth').time[0]; }
   get end() { return this.table('truth').time.at(-1); }
 

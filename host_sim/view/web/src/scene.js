@@ -6,8 +6,9 @@ import { displayOf, matrixOf, norm, product, scaled, times, transposed } from '.
 import { bodyOf } from './spacecraft.js';
 import { withUnit } from './units.js';
 
-/** Views: what the camera looks at and from where; keys 1 to 6. */
-export const kViews = [['both', 'Both'], ['servicer', 'Servicer'], ['target', 'Target'], ['along', 'Along T'], ['above', 'From above'], ['whole', 'Whole path']];
+/** Views: what is looked at and from where; keys 1 to 7. */
+export const kViews = [['both', 'Both'], ['servicer', 'Servicer'], ['target', 'Target'], ['along', 'Along T'], ['above', 'From above'], ['whole', 'Whole path'], ['camera', 'Camera']];
+const kFieldDeg = 40;  // height of the field of view, but through a camera of the run
 const kMinPixels = 26;  // radius at which a spacecraft is drawn at least
 
 const vector = (a) => new three.Vector3(...a);
@@ -27,8 +28,9 @@ export class Scene {
     this.options = { centre: 'servicer', axes: 'rotating', view: 'both' };
     this.renderer = new three.WebGLRenderer({ antialias: true, logarithmicDepthBuffer: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(devicePixelRatio);
+    this.renderer.shadowMap.enabled = true;
     element.prepend(this.renderer.domElement);
-    this.camera = new three.PerspectiveCamera(40, 1, 0.01, 1e8);
+    this.camera = new three.PerspectiveCamera(kFieldDeg, 1, 0.01, 1e8);
     this.camera.position.set(0.35, 0.45, 1);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener('change', () => this.#draw());
@@ -42,6 +44,8 @@ export class Scene {
     const run = this.runs[0];
     this.sunLight = new three.DirectionalLight(0xffffff, 3);
     this.ambient = new three.AmbientLight(0xffffff, 0.5);
+    this.sunLight.castShadow = true;
+    this.sunLight.shadow.mapSize.set(1024, 1024);
     this.world.add(this.sunLight, this.sunLight.target, this.ambient);
     this.servicer = await bodyOf(run, 'servicer', 0x7f9fd0);
     this.target = await bodyOf(run, 'target', 0xd0a060);
@@ -68,6 +72,9 @@ export class Scene {
     this.world.add(this.commanded);
     this.sight = new three.LineSegments(new three.BufferGeometry(), new three.LineBasicMaterial({ transparent: true, opacity: 0.8 }));
     this.world.add(this.sight);
+    this.keypoints = new three.LineSegments(new three.BufferGeometry(), new three.LineBasicMaterial());
+    this.keypoints.frustumCulled = false;
+    this.world.add(this.keypoints);
     this.grid = new three.Group();
     this.world.add(this.grid);
     this.servicerLabel = this.#label('', 'craft');
@@ -104,12 +111,11 @@ export class Scene {
 
   colour() {
     this.spacing = undefined;  // the grid is made again
-    this.world.background = new three.Color(cssColour('--sky'));
     const set = (object, name) => object.material.color.set(cssColour(name));
     for (const [name, variable] of [['sun', '--c3'], ['earth', '--c0'], ['r', '--muted'], ['t', '--muted'], ['n', '--muted']]) set(this.arrows[name], variable);
     for (const part of [this.ellipsoid, this.ellipsoid.children[0]]) set(part, '--c1');
     for (const part of [this.keepOut, this.keepOut.children[0]]) set(part, '--bad');
-    for (const line of [this.sight, this.commanded]) set(line, '--c2');
+    for (const line of [this.sight, this.commanded, this.keypoints]) set(line, '--c2');
   }
 
   // ---- geometry in display axes
@@ -234,9 +240,9 @@ export class Scene {
     const sun = motion.sunAt(t);
     this.arrows.sun.visible = Boolean(sun);
     const sunDirection = sun ? vector(display(times(frame.rtnFromEci, sun.eci))) : new three.Vector3(0.5, 1, 0.7).normalize();
-    this.sunLight.position.copy(sunDirection);
+    this.sunDirection = sunDirection;
     this.sunLight.intensity = 3.2 * (sun ? sun.fraction : 1);
-    this.ambient.intensity = sun ? 0.55 : 1.2;
+    this.ambient.intensity = !sun ? 1.2 : this.options.view === 'camera' ? 0.15 : 0.55;
     const turn = (arrow, direction) => arrow.quaternion.setFromUnitVectors(new three.Vector3(0, 1, 0), direction.clone().normalize());
     turn(this.arrows.sun, sunDirection);
     turn(this.arrows.earth, vector(display([-1, 0, 0])));
@@ -267,25 +273,56 @@ export class Scene {
     return scene.waypoints.find((waypoint) => waypoint.time_s >= t)?.keep_out_m ?? scene.keep_out_m ?? 0;
   }
 
-  /** The field of view of the first camera, out to the range of the target. */
+  /** The camera that the target fits into, the one of the narrowest field of view first; undefined without cameras. */
+  #eye() {
+    const cameras = [...this.servicer.userData.cameras].sort((a, b) => a.tan_half_height - b.tan_half_height);
+    return cameras.find((camera) => this.target.userData.radius < this.range * camera.tan_half_height) ?? cameras.at(-1);
+  }
+
+  /** The field of view of the camera, out to the range of the target, and the view through it. */
   #see(motion, frame, display, atServicer) {
-    const camera = this.servicer.userData.cameras[0], eciFromBody = motion.eciFromBody(this.servicer.userData.name, frame.t);
+    const camera = this.#eye(), eciFromBody = motion.eciFromBody(this.servicer.userData.name, frame.t);
     this.sight.visible = Boolean(camera && eciFromBody);
+    this.keypoints.visible = this.sight.visible && this.options.view === 'camera';
+    this.eye = undefined;
     if (!this.sight.visible) return;
     const bodyFromCamera = transposed(matrixOf(camera.q_camera_body));
-    const corner = (x, y) => vector(display(times(frame.rtnFromEci, times(eciFromBody, times(bodyFromCamera,
-      scaled(this.range, [x * camera.tan_half_width, y * camera.tan_half_height, 1])))))).add(atServicer);
-    const corners = [corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1)];
-    const points = corners.flatMap((c, k) => [atServicer, c, c, corners[(k + 1) % 4]]);
-    this.sight.geometry.dispose();
-    this.sight.geometry = new three.BufferGeometry().setFromPoints(points);
+    const ofBody = (a) => vector(display(times(frame.rtnFromEci, times(eciFromBody, a))));
+    const direction = (x, y, z) => ofBody(times(bodyFromCamera, [x, y, z]));
+    const lens = atServicer.clone().add(ofBody(camera.position_body_m));
+    const at = (x, y) => direction(x * camera.tan_half_width, y * camera.tan_half_height, 1).multiplyScalar(this.range).add(lens);
+    const corners = [at(-1, -1), at(1, -1), at(1, 1), at(-1, 1)];
+    this.#setLines(this.sight, corners.flatMap((c, k) => [lens, c, c, corners[(k + 1) % 4]]));
+    this.eye = { camera, lens, axes: [direction(1, 0, 0), direction(0, -1, 0), direction(0, 0, -1)] };
+    if (!this.keypoints.visible) return;
+    const { focal_length_px: focal, principal_point_px: [cx, cy] } = camera, arm = 0.02 * focal * camera.tan_half_height;
+    const pixel = (x, y) => direction((x - cx) / focal, (y - cy) / focal, 1).multiplyScalar(0.5 * this.range).add(lens);
+    this.#setLines(this.keypoints, this.#measuredAt(frame.t).flatMap(([x, y]) => [pixel(x - arm, y), pixel(x + arm, y), pixel(x, y - arm), pixel(x, y + arm)]));
+  }
+
+  #setLines(lines, points) {
+    lines.geometry.dispose();
+    lines.geometry = new three.BufferGeometry().setFromPoints(points);
+  }
+
+  /** The keypoints that navigation used of the last image until an instant; of a table that is in the page in part, only
+   *  those of images with a picture are complete. */
+  #measuredAt(t) {
+    const table = this.runs[0].table('keypoints'), row = table?.rowAt(t) ?? -1;
+    if (row < 0) return [];
+    const [image, x, y] = table.vector('image', 'x_px', 'y_px'), fates = table.cells('fate');
+    if (table.rows !== table.rowsOfFile && !this.runs[0].pictures.some((picture) => picture.image === image[row])) return [];
+    const found = [];
+    for (let k = row; k >= 0 && image[k] === image[row]; --k)
+      if (fates[k] === 'used') found.push([x[k], y[k]]);
+    return found;
   }
 
   // ---- the camera
 
   setView(view) {
     this.options.view = view;
-    const directions = { along: [-1, 0.02, 0.02], above: [0, 1, 0.001], whole: [0, 0.25, 1], both: [0.12, 0.3, 1], servicer: [0.5, 0.4, 1], target: [0.5, 0.4, 1] };
+    const directions = { along: [-1, 0.02, 0.02], above: [0, 1, 0.001], whole: [0, 0.25, 1], camera: [1, 0, 0], both: [0.12, 0.3, 1], servicer: [0.5, 0.4, 1], target: [0.5, 0.4, 1] };
     this.aimed = undefined;
     this.direction = vector(directions[view]).normalize();
     if (this.frame) this.show(this.t);
@@ -301,6 +338,16 @@ export class Scene {
    *  stay. */
   #aim(atServicer, atTarget) {
     const view = this.options.view;
+    const through = this.through = view === 'camera' && Boolean(this.eye);
+    const { sun, ...others } = this.arrows;
+    for (const part of [this.servicer, this.paths, this.grid, ...Object.values(others)]) part.visible = !through;
+    for (const part of [sun, this.commanded, this.keepOut]) part.visible &&= !through;
+    for (const body of [this.target, ...this.ghosts]) body.userData.axes.visible = !through;
+    this.controls.enabled = !through;
+    this.world.background = new three.Color(through ? 0x000000 : cssColour('--sky'));
+    this.element.classList.toggle('through', through);
+    if (through) return this.#lookThrough(atTarget);
+    this.camera.fov = kFieldDeg;
     let centre, size;
     if (view === 'whole') {
       const box = new three.Box3().setFromPoints(this.truePoints.map((p) => p.at)).expandByPoint(new three.Vector3());
@@ -330,13 +377,27 @@ export class Scene {
     this.updating = false;
   }
 
+  /** The image of the camera of the run in the middle, whole; without the distortion of its lens. */
+  #lookThrough(atTarget) {
+    const { camera, lens, axes } = this.eye;
+    this.aimed = undefined;
+    this.camera.position.copy(lens);
+    this.camera.quaternion.setFromRotationMatrix(new three.Matrix4().makeBasis(...axes));
+    this.camera.fov = (360 / Math.PI) * Math.atan(1.04 * Math.max(camera.tan_half_height, camera.tan_half_width / this.camera.aspect));
+    this.camera.near = Math.max(1e-3 * this.range, 0.02);
+    this.camera.far = 10 * this.range;
+    this.camera.updateProjectionMatrix();
+    this.controls.target.copy(atTarget);
+  }
+
   resize() {
     const { clientWidth: width, clientHeight: height } = this.element;
     if (!width || !height) return;
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    this.#draw();
+    if (this.through) this.show(this.t);
+    else this.#draw();
   }
 
   /** m a pixel at a place. */
@@ -356,10 +417,11 @@ export class Scene {
 
   #render() {
     for (const body of [this.servicer, this.target, ...this.ghosts]) {
-      const scale = Math.max((kMinPixels * this.#metresPerPixel(body.position)) / body.userData.radius, 1);
+      const scale = this.through ? 1 : Math.max((kMinPixels * this.#metresPerPixel(body.position)) / body.userData.radius, 1);
       body.scale.setScalar(scale);
       body.userData.scale = scale;
     }
+    this.#shine(this.options.view === 'servicer' ? this.servicer : this.target);
     const perPixel = this.#metresPerPixel(this.controls.target);
     const origin = this.options.centre === 'servicer' ? this.servicer.position : this.target.position;
     for (const [name, arrow] of Object.entries(this.arrows)) {
@@ -378,6 +440,16 @@ export class Scene {
     this.#describe();
     this.renderer.render(this.world, this.camera);
     this.#placeLabels();
+  }
+
+  /** The light of the Sun, with the shadows of a body on itself and on what is beside it. */
+  #shine(body) {
+    const reach = 1.6 * body.userData.radius * body.userData.scale, { shadow } = this.sunLight;
+    this.sunLight.target.position.copy(body.position);
+    this.sunLight.position.copy(body.position).addScaledVector(this.sunDirection, 4 * reach);
+    Object.assign(shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: reach, far: 7 * reach });
+    shadow.camera.updateProjectionMatrix();
+    shadow.normalBias = reach / 300;
   }
 
   /** Lines in the plane of R and T, a decade apart from what a hundred pixels show. */
@@ -403,19 +475,21 @@ export class Scene {
     this.servicerLabel.position.copy(this.servicer.position);
     this.targetLabel.element.textContent = `${this.target.userData.name}${enlarged(this.target)}${without(this.target)}`;
     this.targetLabel.position.copy(this.target.position);
+    this.targetLabel.visible = !this.through || this.target.userData.radius < 20 * this.#metresPerPixel(this.target.position);
     this.estimateLabel.visible = this.ellipsoid.visible;
     this.estimateLabel.element.textContent = '3σ';
     this.estimateLabel.position.copy(new three.Vector3(1, 0, 0).applyQuaternion(this.ellipsoid.quaternion).multiplyScalar(this.ellipsoid.scale.x).add(this.ellipsoid.position));
     if (this.estimateLabel.position.distanceTo(this.target.position) < 12 * this.#metresPerPixel(this.target.position)) this.estimateLabel.visible = false;
     const keepOut = this.keepOut.visible ? `, keep-out ${withUnit(this.keepOutRadius, 'm', 3)}` : '';
-    this.gridLabel.textContent = `RTN ${this.options.axes}, about the ${this.options.centre} · grid ${this.spacing >= 1000 ? `${this.spacing / 1000} km` : `${+this.spacing.toPrecision(3)} m`}${keepOut}`;
+    if (this.through) this.gridLabel.textContent = `through ${this.eye.camera.name} of the ${this.servicer.userData.name}${this.keypoints.geometry.attributes.position?.count ? ', keypoints that navigation used of the last image (green)' : ''}`;
+    else this.gridLabel.textContent = `RTN ${this.options.axes}, about the ${this.options.centre} · grid ${this.spacing >= 1000 ? `${this.spacing / 1000} km` : `${+this.spacing.toPrecision(3)} m`}${keepOut}`;
   }
 
   #placeLabels() {
     const { clientWidth: width, clientHeight: height } = this.element;
-    for (const { element, position, visible } of this.labels) {
+    for (const { element, position, visible, kind } of this.labels) {
       const p = position.clone().project(this.camera);
-      const shown = visible && p.z < 1 && Math.abs(p.x) < 1.05 && Math.abs(p.y) < 1.05;
+      const shown = visible && !(this.through && (kind === 'waypoint' || element === this.servicerLabel.element)) && p.z < 1 && Math.abs(p.x) < 1.05 && Math.abs(p.y) < 1.05;
       element.style.display = shown ? '' : 'none';
       if (shown) element.style.transform = `translate(${((p.x + 1) * width) / 2}px, ${((1 - p.y) * height) / 2}px)`;
     }

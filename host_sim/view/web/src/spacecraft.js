@@ -54,8 +54,9 @@ export async function bodyOf(run, role, colour) {
   const group = new three.Group();
   const body = run.scene?.bodies?.[role];
   const shape = body?.model ? run.scene.shapes[body.model] : undefined;
-  group.add(shape ? await meshOf(shape, body.centre_of_mass_m) : plainBody(colour));
-  group.add(new three.AxesHelper(shape ? 1.6 * shape.radius_m : 1));
-  group.userData = { radius: shape?.radius_m ?? 0.6, name: body?.name ?? role, hasShape: Boolean(shape), cameras: body?.cameras ?? [] };
+  const mesh = shape ? await meshOf(shape, body.centre_of_mass_m) : plainBody(colour), axes = new three.AxesHelper(shape ? 1.6 * shape.radius_m : 1);
+  Object.assign(mesh, { castShadow: true, receiveShadow: true });
+  group.add(mesh, axes);
+  group.userData = { radius: shape?.radius_m ?? 0.6, name: body?.name ?? role, hasShape: Boolean(shape), axes, cameras: body?.cameras ?? [] };
   return group;
 }

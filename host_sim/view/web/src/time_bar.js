@@ -46,18 +46,6 @@ function faultsOf(run) {
   return [...scenario, ...present];
 }
 
-function eclipsesOf(run) {
-  const table = run.table('sunlight');
-  if (!table) return [];
-  const fraction = table.numbers('servicer_sunlit'), found = [];
-  fraction.forEach((f, k) => {
-    if (f > 0.5) return;
-    if (found.length && found.at(-1).row === k - 1) Object.assign(found.at(-1), { row: k, end: table.time[Math.min(k + 1, table.rows - 1)] });
-    else found.push({ begin: table.time[k], end: table.time[Math.min(k + 1, table.rows - 1)], row: k, word: 'eclipse' });
-  });
-  return found;
-}
-
 const kAidColours = { aiding: '--good', starting: '--c3', waiting: '--grid', suspended: '--caution', failed: '--bad', off: '--grid' };
 const kModeColours = { approach: '--c0', station_keeping: '--c2', hold: '--c3', retreat: '--bad', idle: '--c5' };
 
@@ -65,7 +53,10 @@ export class TimeBar {
   constructor(element, run, cursor) {
     Object.assign(this, { element, run, cursor });
     this.canvas = document.createElement('canvas');
-    element.append(this.canvas);
+    this.note = document.createElement('div');
+    this.note.className = 'pointed';
+    this.note.hidden = true;
+    element.append(this.canvas, this.note);
     Object.assign(element, { tabIndex: 0, role: 'slider', ariaLabel: 'time of the mission' });
     this.#read();
     this.#listen();
@@ -89,7 +80,7 @@ export class TimeBar {
     this.burns = burnsOf(run);
     this.modes = intervals(run.table('estimate'), 'mode', run.end);
     this.faults = faultsOf(run);
-    this.eclipses = eclipsesOf(run);
+    this.eclipses = run.eclipses;
     this.pictures = run.pictures.map((picture) => ({ begin: picture.time_s, end: picture.time_s, word: `picture ${picture.image}` }));
     this.lanes = [{ name: 'burns', height: 20, draw: 'burns' }, { name: 'mode', height: 10, items: this.modes, colour: (word) => kModeColours[word] ?? '--c5' },
                   ...[...aidLanes(run)].map(([name, items]) => ({ name, height: 9, items, colour: (word) => kAidColours[word] ?? '--c5' }))];
@@ -105,6 +96,7 @@ export class TimeBar {
     const move = (event) => this.cursor.set(this.#time(event.clientX - this.element.getBoundingClientRect().left));
     this.element.addEventListener('pointerdown', (event) => { this.element.setPointerCapture(event.pointerId); this.dragging = true; this.cursor.play(false); move(event); });
     this.element.addEventListener('pointermove', (event) => { if (this.dragging) move(event); else this.#explain(event); });
+    this.element.addEventListener('pointerleave', () => { this.note.hidden = true; });
     this.element.addEventListener('pointerup', () => { this.dragging = false; });
     this.element.addEventListener('keydown', (event) => {
       const moved = { Home: () => this.cursor.set(this.cursor.start), End: () => this.cursor.set(this.cursor.end), PageUp: () => this.cursor.step(-60), PageDown: () => this.cursor.step(60) }[event.key];
@@ -112,14 +104,24 @@ export class TimeBar {
     });
   }
 
-  /** What is under the pointer, as a tooltip. */
+  /** The place of an instant in a lane, px in the window. */
+  placeOf(name, t) {
+    const box = this.element.getBoundingClientRect(), lane = this.lanes.find((l) => l.name === name);
+    return [box.x + this.#x(t), box.y + lane.top + lane.height / 2];
+  }
+
+  /** A note on what is under the pointer. */
   #explain(event) {
     const box = this.element.getBoundingClientRect(), x = event.clientX - box.left, y = event.clientY - box.top, t = this.#time(x);
     const near = (items) => items.find(({ begin, end }) => x >= this.#x(begin) - 3 && x <= this.#x(end) + 3);
     const lane = this.lanes.find((l) => y >= l.top && y < l.top + l.height + 3);
     const burn = lane?.draw ? near(this.burns) : undefined;
     const item = burn ? { word: `burn of ${withUnit(burn.size, 'm/s')} at ${hours(burn.begin)}` } : lane?.items ? near([...lane.items].reverse()) : y < 20 ? near(this.waypoints) ?? near(this.pictures) : undefined;
-    this.element.title = `${hours(t)}${item ? `: ${lane?.items ? `${lane.name} ` : ''}${item.word}` : ''}`;
+    const lasts = item && item.end > item.begin ? `, ${hours(item.begin)} to ${hours(item.end)}` : '';
+    this.note.textContent = item ? `${lane?.items ? `${lane.name} ` : ''}${item.word}${lasts}`.replaceAll('_', ' ') : hours(t);
+    this.note.hidden = x < kLeft;
+    const right = x > this.element.clientWidth / 2;
+    Object.assign(this.note.style, { top: `${Math.max(y - 24, 1)}px`, left: right ? '' : `${x + 10}px`, right: right ? `${this.element.clientWidth - x + 10}px` : '' });
   }
 
   draw() {

@@ -70,6 +70,27 @@ TEST_F(HtmlReport, TellsTheWholeRun) {
   EXPECT_THAT(html, HasSubstr("at most 350,000, on average 250,001 instructions; at most 21,000 bytes of stack"));
 }
 
+TEST_F(HtmlReport, StatesWhereThereIsNoEstimate) {
+  constexpr double kLast_h = 11.0;
+  RunRecord record = synthetic_run();
+  EXPECT_THAT(html_report(record), testing::Not(HasSubstr("No estimate")));
+  for (EstimateRow& row : record.estimates)
+    if (row.time_s > 3600.0 * kLast_h) row.navigation_valid = 0;
+  const std::string html = html_report(record);
+  EXPECT_THAT(html, HasSubstr("No estimate after 11.00 h, waypoints 0 to "));
+  EXPECT_THAT(html, HasSubstr("No estimate, waypoints "));
+  EXPECT_EQ(complaints(html), "");
+}
+
+// What happened comes before what identifies the run; distances from kilometres to millimetres have their units.
+TEST_F(HtmlReport, BeginsWithTheStory) {
+  const std::string html = html_report(synthetic_run());
+  EXPECT_LT(html.find("<h2>Mission at a glance"), html.find("SHA-256"));
+  EXPECT_LT(html.find("<h2>Waypoints"), html.find("SHA-256"));
+  EXPECT_THAT(html, HasSubstr(">10 km</text>"));
+  EXPECT_THAT(html, HasSubstr(">1 m</text>"));
+}
+
 TEST_F(HtmlReport, ShowsWhichSourceAidedWhen) {
   RunRecord record = synthetic_run();
   const double start_s = record.truth.front().time_s;
