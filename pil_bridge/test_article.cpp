@@ -23,6 +23,7 @@
 #include "fsw/packets/messages.h"
 #include "host_sim/io/child_process.h"
 #include "host_sim/io/file_descriptor.h"
+#include "host_sim/io/process_tree.h"
 #include "pil_bridge/flight_computer.h"
 #include "pil_bridge/qemu.h"
 
@@ -203,6 +204,9 @@ using Clock = std::chrono::steady_clock;
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::chrono::milliseconds kAfterSignal{1000};
+constexpr std::uint32_t kAnswerMax =
+    2 *
+    (boards::kOutboxBytes + boards::kOutboxPackets * sizeof(std::uint32_t));  ///< an outbox, and more than its trouble
 constexpr Clock::time_point kNever = Clock::time_point::max();
 
 template <class Number>
@@ -231,10 +235,11 @@ class Reader {
     return value;
   }
   std::vector<Packet> packets() {
-    std::vector<Packet> all(number<std::uint32_t>());
-    for (Packet& packet : all) {
+    const auto count = number<std::uint32_t>();
+    std::vector<Packet> all;
+    for (std::uint32_t k = 0; k < count; ++k) {
       const auto bytes = take(number<std::uint32_t>());
-      packet.assign(bytes.begin(), bytes.end());
+      all.emplace_back(bytes.begin(), bytes.end());
     }
     return all;
   }
@@ -250,7 +255,7 @@ class Reader {
   std::span<const std::uint8_t> rest_;
 };
 
-enum class Transfer { kDone, kGone, kLate };
+enum class Transfer { kDone, kGone, kLate, kTooLong };
 
 /// Sends or receives all of `bytes`, until `deadline`, which a signal to this process brings forward.
 template <class Byte, class Call>
@@ -282,12 +287,15 @@ Transfer send_message(int socket, const Bytes& message, Clock::time_point& deadl
   });
 }
 
-Transfer receive_message(int socket, Bytes& message, Clock::time_point& deadline) {
+/// Receives a message of up to `size_max` bytes: a test article that writes to descriptors which are not its own may
+/// have sent any other number.
+Transfer receive_message(int socket, Bytes& message, Clock::time_point& deadline, std::uint32_t size_max = UINT32_MAX) {
   const auto take = [socket](auto bytes) { return ::recv(socket, bytes.data(), bytes.size(), MSG_DONTWAIT); };
   std::uint32_t size = 0;
   const std::span header(reinterpret_cast<std::uint8_t*>(&size), sizeof size);
   const Transfer first = transfer(socket, header, POLLIN, deadline, take);
   if (first != Transfer::kDone) return first;
+  if (size > size_max) return Transfer::kTooLong;
   message.resize(size);
   return transfer(socket, std::span(message), POLLIN, deadline, take);
 }
@@ -341,7 +349,7 @@ class Guarded final : public FlightComputer {
     io::FileDescriptor ours(ends[0]), theirs(ends[1]);
     std::fflush(nullptr);  // or the child would write again what waits in this process's buffers
     const pid_t parent = ::getpid();
-    child_ = ::fork();
+    child_ = io::fork_leader();
     if (child_ < 0) fail("cannot be started", errno);
     if (child_ == 0) {
       ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -395,7 +403,7 @@ class Guarded final : public FlightComputer {
   Bytes await(const std::string& where) {
     Clock::time_point deadline = Clock::now() + step_limit_;
     Bytes message;
-    const Transfer received = receive_message(socket_.get(), message, deadline);
+    const Transfer received = receive_message(socket_.get(), message, deadline, kAnswerMax);
     if (received != Transfer::kDone) explain(received, where);
     Reader reader(message);
     if (reader.number<Answer>() == Answer::kDone) return message;
@@ -408,6 +416,10 @@ class Guarded final : public FlightComputer {
     if (transfer == Transfer::kLate) {
       stop(SIGKILL);
       throw FlightComputerError(name_ + " did not return " + where + " in time, and was stopped");
+    }
+    if (transfer == Transfer::kTooLong) {
+      stop(SIGKILL);
+      throw FlightComputerError(name_ + " wrote to a descriptor that is not its own " + where + ", and was stopped");
     }
     const int status = stop(0);
     const std::string memory =

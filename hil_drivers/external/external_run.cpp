@@ -74,6 +74,25 @@ std::shared_ptr<const mission::TestbedSettings> read_external(const TableReader&
 
 namespace {
 
+/// Rejects the program of a source that the mission does not have: its name is misspelt, or its sensor has another
+/// source, and the program would not be started.
+void check_external(const TableReader& section, const mission::TestbedSettings& settings,
+                    const mission::Mission& mission) {
+  std::vector<std::string> names;
+  if (mission.truth_source == kExternal.name) names.emplace_back(kTruth);
+  for (const mission::Spacecraft& spacecraft : mission.spacecraft)
+    for (const mission::Sensor& sensor : spacecraft.sensors)
+      if (sensor.settings->source == kExternal.name) names.push_back(spacecraft.name + "/" + sensor.name);
+  const std::vector<TableReader> sources = section.tables("source");
+  const auto& read = dynamic_cast<const ExternalSettings&>(settings).sources;
+  for (std::size_t k = 0; k < sources.size(); ++k) {
+    if (std::ranges::find(names, read[k].source) != names.end()) continue;
+    sources[k].refuse_value("name", names.empty()
+                                        ? "nothing, as neither the truth nor a sensor has source = \"external\""
+                                        : fmt::format("what has source = \"external\": {}", fmt::join(names, ", ")));
+  }
+}
+
 /// The program finds its end of the line at this descriptor, as vbar_flight does.
 constexpr int kLineFd = 3;
 
@@ -130,29 +149,17 @@ class ExternalRun final : public testbeds::TestbedRun {
       : settings_(settings), mission_(context.mission), data_(context.data_directory) {}
 
   std::unique_ptr<twins::PacketSource> make_packets(const testbeds::PacketPlan& plan) override {
-    made_.push_back(plan.name);
     return std::make_unique<ExternalSource>(plan, static_cast<std::int64_t>(mission_.seed), numbers_of(mission_),
                                             connection_to(settings_, mission_, data_, plan.name, plan.spacecraft));
   }
 
-  /// Throws std::runtime_error for a program of a source that the mission does not have: its name is misspelt, or its
-  /// sensor has another source, and the program would not be started.
-  void begin(report::RunRecord& /*record*/, const std::filesystem::path& /*folder*/) override {
-    for (const ProgramOfSource& one : settings_.sources) {
-      if (one.source == kTruth || std::ranges::find(made_, one.source) != made_.end()) continue;
-      throw std::runtime_error(
-          fmt::format("testbed.external.source: found the name \"{}\", which no sensor with source = \"external\" has; "
-                      "accepted: {}",
-                      one.source, fmt::join(made_, ", ")));
-    }
-  }
+  void begin(report::RunRecord& /*record*/, const std::filesystem::path& /*folder*/) override {}
   void finish() noexcept override {}
 
  private:
   ExternalSettings settings_;
   const mission::Mission& mission_;
   std::filesystem::path data_;
-  std::vector<std::string> made_;  ///< names of the sources of this run
 };
 
 std::shared_ptr<testbeds::TestbedRun> open(const mission::TestbedSettings& settings,
@@ -170,6 +177,10 @@ std::unique_ptr<testbeds::TestbedTruth> make_truth(const mission::TestbedSetting
 }  // namespace
 
 const testbeds::TestbedKind kExternal{
-    {.name = "external", .read = read_external, .supplies_truth = true}, open, {}, nullptr, make_truth};
+    {.name = "external", .read = read_external, .supplies_truth = true, .check = check_external},
+    open,
+    {},
+    nullptr,
+    make_truth};
 
 }  // namespace vbar::external

@@ -18,6 +18,20 @@ namespace {
 
 constexpr const SensorKind* kSensorKinds[] = {&kIdealNavigation, &kGnss, &kCamera, &kRangeFinder};
 
+/// Adds a note on each testbed whose programs and devices are not started, as nothing in the mission has it as source.
+void note_unused_testbeds(const mission::Mission& mission, std::vector<std::string>& notes) {
+  for (const mission::Testbed& testbed : mission.testbeds) {
+    const auto has_sensor = [&](const mission::Spacecraft& spacecraft) {
+      return std::ranges::any_of(
+          spacecraft.sensors, [&](const mission::Sensor& sensor) { return sensor.settings->source == testbed.name; });
+    };
+    if (mission.truth_source == testbed.name || std::ranges::any_of(mission.spacecraft, has_sensor)) continue;
+    notes.push_back("testbed." + testbed.name +
+                    " has no effect in this mission: neither a sensor nor the truth has source = \"" + testbed.name +
+                    "\"");
+  }
+}
+
 }  // namespace
 
 std::span<const SensorKind* const> sensor_kinds() {
@@ -60,6 +74,7 @@ MadeSources make_sources(const mission::Mission& mission, const mission::Spacecr
   const MakeContext context{mission, servicer, data_directory, shared, testbeds, outlook, made.data_notes};
   for (const mission::Sensor& sensor : servicer.sensors) kind_of(sensor).add_sources(sensor, context, made.sources);
   made.testbeds = testbeds.runs();
+  note_unused_testbeds(mission, made.data_notes);
   return made;
 }
 

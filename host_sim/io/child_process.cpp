@@ -21,6 +21,7 @@
 #include <unistd.h>
 
 #include "host_sim/io/address_sanitizer.h"
+#include "host_sim/io/process_tree.h"
 
 namespace vbar::io {
 
@@ -53,21 +54,6 @@ bool limit_memory(std::uint64_t bytes) {
   limit.rlim_cur = std::min<rlim_t>(limit.rlim_max, data_bytes() + bytes);
   limit.rlim_max = limit.rlim_cur;  // the program cannot raise it again
   return ::setrlimit(RLIMIT_DATA, &limit) == 0;
-}
-
-bool reap_leader(pid_t leader, int options, bool ends_group, int& status, rusage& usage) {
-  siginfo_t info{};
-  int waited = -1;
-  do {
-    waited = ::waitid(P_PID, static_cast<id_t>(leader), &info, WEXITED | WNOWAIT | options);
-  } while (waited < 0 && errno == EINTR);
-  if (waited != 0 || info.si_pid != leader) return false;
-  if (ends_group) (void)::kill(-leader, SIGKILL);
-  pid_t reaped = -1;
-  do {
-    reaped = ::wait4(leader, &status, 0, &usage);
-  } while (reaped < 0 && errno == EINTR);
-  return reaped == leader;
 }
 
 bool came_near(std::uint64_t bytes, const rusage& usage) {
@@ -182,7 +168,7 @@ void ChildProcess::start(const std::vector<std::string>& arguments, const std::v
   plan.parent = ::getpid();
   plan.memory_bytes = memory_bytes_;
 
-  pid_ = ::fork();
+  pid_ = fork_leader();
   if (pid_ < 0) throw_errno("starting " + program_, errno);
   if (pid_ == 0) become(plan, body);
 
@@ -204,14 +190,28 @@ ChildProcess::~ChildProcess() {
   terminate(std::chrono::milliseconds(500));
 }
 
+namespace {
+
+/// Gives back the memory of all but the last output of a program that prints without end.
+void discard_old_output(int file) {
+  constexpr blkcnt_t kBlocksMax = (blkcnt_t{64} << 20) / 512;
+  constexpr off_t kKept = off_t{1} << 20;
+  struct stat info {};
+  if (::fstat(file, &info) != 0 || info.st_blocks <= kBlocksMax || info.st_size <= kKept) return;
+  (void)::fallocate(file, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, 0, info.st_size - kKept);
+}
+
+}  // namespace
+
 bool ChildProcess::has_ended() {
+  discard_old_output(output_.get());
   return wait_status_.has_value() || reap(WNOHANG);
 }
 
 bool ChildProcess::reap(int options) {
   int status = 0;
   struct rusage usage {};
-  if (!reap_leader(pid_, options, !keeps_group_, status, usage)) return false;
+  if (!reap_leader(pid_, options, !keeps_tree_, status, usage)) return false;
   wait_status_ = status;
   came_near_limit_ = memory_bytes_ > 0 && came_near(memory_bytes_, usage);
   for (const timeval& time : {usage.ru_utime, usage.ru_stime})

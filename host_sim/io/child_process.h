@@ -25,16 +25,12 @@ inline constexpr std::uint64_t kDefaultMemoryBytes = 8 * kBytesPerGib;
 /// False if the system refuses.
 [[nodiscard]] bool limit_memory(std::uint64_t bytes);
 
-/// waitpid for a child that leads a process group: once it has ended, the processes that remain in its group are
-/// killed if `ends_group`, before its number can be that of another. `options`: 0 or WNOHANG. True if it has ended.
-bool reap_leader(pid_t leader, int options, bool ends_group, int& status, rusage& usage);
-
 /// Whether a process that used `usage` may have ended because of a limit of `bytes`.
 [[nodiscard]] bool came_near(std::uint64_t bytes, const rusage& usage);
 
 // A child process that does not outlive its owner: it is ended and reaped by its owner's destructor, also while an
-// exception unwinds, and by the kernel if this program dies first. What it has started and left behind in its process
-// group is ended with it unless it is to be kept.
+// exception unwinds, and by the kernel if this program dies first. What it has started and left behind is ended with it
+// (process_tree.h) unless it is to be kept.
 
 class ChildProcess {
  public:
@@ -59,7 +55,7 @@ class ChildProcess {
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   /// Lets the processes live on that the child leaves behind when it ends by itself, as those of a shell's "&".
-  void keep_processes_left_behind() { keeps_group_ = true; }
+  void keep_processes_left_behind() { keeps_tree_ = true; }
 
   /// Returns true once the child has ended by itself or has been ended.
   bool has_ended();
@@ -96,7 +92,7 @@ class ChildProcess {
   std::optional<int> wait_status_;
   double processor_time_s_ = 0.0;
   std::uint64_t memory_bytes_ = 0;  ///< limit; 0: none
-  bool keeps_group_ = false;
+  bool keeps_tree_ = false;
   bool came_near_limit_ = false;
 
   void start(const std::vector<std::string>& arguments, const std::vector<FileDescriptor>& inherited,

@@ -64,6 +64,7 @@ void with_document(std::string_view text, const std::filesystem::path& file, std
   Mission mission;
   mission.file = file;
   for (const Section& section : kSections) section.read(document, mission, installation);
+  check_testbeds(document, mission, installation);
   document.finish();
   mission.data_files = document.data_files();
   use(document, std::move(mission));

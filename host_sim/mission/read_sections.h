@@ -43,6 +43,9 @@ std::vector<Sensor> read_sensors(const TableReader& sensors, const SensorContext
 void check_sensors(const TableReader& sensors, const Spacecraft& spacecraft, const Mission& mission,
                    const Installation& installation);
 
+/// Checks the testbeds against the complete mission.
+void check_testbeds(const TableReader& document, const Mission& mission, const Installation& installation);
+
 /// Reads `distribution` and its parameters.
 engine::LatencyDistribution read_latency(const TableReader& section);
 

@@ -130,4 +130,12 @@ void read_testbeds(const TableReader& document, Mission& mission, const Installa
   }
 }
 
+void check_testbeds(const TableReader& document, const Mission& mission, const Installation& installation) {
+  for (const Testbed& testbed : mission.testbeds) {
+    const auto driver = std::ranges::find(installation.testbeds, testbed.name, &TestbedReader::name);
+    if ((*driver)->check != nullptr)
+      (*driver)->check(document.table("testbed").table(testbed.name), *testbed.settings, mission);
+  }
+}
+
 }  // namespace vbar::mission

@@ -44,6 +44,9 @@ struct TestbedReader {
   /// The mode that the clock of a run with these settings must have. Null, or no value: any.
   std::optional<engine::ClockMode> (*clock_mode)(const TestbedSettings& settings) = nullptr;
   bool supplies_truth = false;  ///< whether it can be the source of a run's truth
+  /// Rejects settings that are inconsistent with the complete mission. Null: none are. `section` is the testbed's
+  /// table.
+  void (*check)(const TableReader& section, const TestbedSettings& settings, const Mission& mission) = nullptr;
 };
 
 /// The sensors, testbeds and clocks of a program.

@@ -249,22 +249,30 @@ class External(Programs):
             self.assertEqual(result.returncode, 2, result.stderr)
             self.assertIn(fault, result.stderr)
 
-    def test_a_program_of_a_source_that_the_mission_does_not_have(self):
+    def test_a_program_that_would_not_be_started(self):
+        """A misspelt name, a sensor with another source, a truth by the model: refused before the flight. A testbed without any source: a note."""
         program = f'program = "{SENSOR_IN_C} --stream 3"'
-        mission = self.mission(f'{program}\n[[testbed.external.source]]\nname = "servicer/lidr"\n{program}')
-        mission.write_text(mission.read_text().replace("answer_limit_s = 2.0", ""))
-        result = vbar("run", mission, "--quiet", "--force", "--out", self.folder / "run")
-        self.assertEqual(result.returncode, 1, result.stderr)
-        self.assertIn('testbed.external.source: found the name "servicer/lidr", which no sensor with source = "external" has; accepted: '
-                      'servicer/lidar', result.stderr)
+        lidar = "what has source = \"external\": servicer/lidar"
+        nothing = "nothing, as neither the truth nor a sensor has source = \"external\""
+        for name, sensor_source, accepted in (("servicer/lidr", "external", lidar), ("truth", "external", lidar),
+                                              ("servicer/lidar", "digital", nothing)):
+            mission = self.mission(f'[[testbed.external.source]]\nname = "{name}"\n{program}')
+            mission.write_text(mission.read_text().replace("answer_limit_s = 2.0\n", ""))
+            result = vbar("run", mission, "--check", *overrides(f"spacecraft.servicer.sensors.lidar.source={sensor_source}"))
+            self.assertEqual(result.returncode, 2, result.stderr)
+            self.assertIn(f'found the text "{name}"; accepted: {accepted}', result.stderr)
+        unused = vbar("run", self.mission(program), "--check", *overrides("spacecraft.servicer.sensors.lidar.source=digital"))
+        self.assertEqual(unused.returncode, 0, unused.stderr)
+        self.assertIn('data: testbed.external has no effect in this mission: neither a sensor nor the truth has source = "external"',
+                      unused.stdout)
 
     def test_programs_that_are_missing(self):
-        for program, fault in (('program = "no_such_program"', "no_such_program"),
-                               ('[[testbed.external.source]]\nname = "servicer/radar"\nprogram = "x"\n[testbed.grand]',
-                                "names no program for the source servicer/lidar")):
+        own = '[[testbed.external.source]]\nname = "servicer/lidar"\nprogram = "x"\n[testbed.grand]'
+        for program, settings, fault in (('program = "no_such_program"', [], "no_such_program"),
+                                         (own, EXTERNAL_RECEIVERS, "names no program for the source servicer/gnss")):
             mission = self.mission(program)
             mission.write_text(mission.read_text().replace("\n[testbed.grand]\nanswer_limit_s = 2.0", ""))
-            result = vbar("run", mission, "--quiet", "--force", "--out", self.folder / "run")
+            result = vbar("run", mission, "--quiet", "--force", "--out", self.folder / "run", *overrides(*settings))
             self.assertNotEqual(result.returncode, 0)
             self.assertIn(fault, result.stderr)
 

@@ -16,7 +16,9 @@ enum {
   kAllocates = 7,
   kForks = 8,
   kSendsNothing = 9,
-  kSendsGarbage = 10
+  kSendsGarbage = 10,
+  kForksSession = 11,
+  kWritesToDescriptors = 12
 };
 enum { kStatus = 12345 };
 
@@ -70,8 +72,11 @@ vbar_status vbar_gnc_step(void* state, int64_t gps_time_ns) {
     volatile char* const memory = malloc(1 << 20);
     for (int at = 0; at < 1 << 20; at += 4096) memory[at] = 1;
   }
-  if (fault == kForks) {
+  for (int descriptor = 3; fault == kWritesToDescriptors && descriptor < 64; ++descriptor)
+    (void)!write(descriptor, "\xFF\xFF\xFF\xFFgarbage", 11);
+  if (fault == kForks || fault == kForksSession) {
     const pid_t child = fork();
+    if (child == 0 && fault == kForksSession) (void)setsid();
     for (; child == 0;) (void)sleep(1000);
     char text[16];
     const int size = snprintf(text, sizeof text, "%d", (int)child);

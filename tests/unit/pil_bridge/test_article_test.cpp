@@ -104,6 +104,7 @@ TEST(LibraryInChild, AFaultIsOneSentenceAndTheProgramGoesOn) {
   EXPECT_THAT(flying(1), ThrowsMessage<FlightComputerError>(HasSubstr("crashed at step 7: Segmentation fault")));
   EXPECT_THAT(flying(2), ThrowsMessage<FlightComputerError>(HasSubstr("did not return at step 7")));
   EXPECT_THAT(flying(3), ThrowsMessage<FlightComputerError>(HasSubstr("at step 7, with exit code 7")));
+  EXPECT_THAT(flying(12), ThrowsMessage<FlightComputerError>(HasSubstr("not its own at step 7")));
   EXPECT_THAT(flying(4), ThrowsMessage<FlightComputerError>(HasSubstr("crashed while it was loaded")));
   EXPECT_THAT(flying(5), ThrowsMessage<FlightComputerError>(HasSubstr("did not return while it was loaded")));
 }
@@ -128,25 +129,25 @@ TEST(LibraryInChild, ItsMemoryIsLimited) {
           AllOf(HasSubstr("at step 7"), HasSubstr("limit of its memory, 64 MiB"))));
 }
 
+// In its process group, or in a session of their own.
 TEST(LibraryInChild, ProcessesThatItStartedEndWithIt) {
-  int pid = 0;
-  {
-    const auto child = library_in_child(kLibraries + "libvbar_article_with_faults.so", 8);
-    const StepResult result = child->step(0, vbar::test::step_packets(0, 3));
-    ASSERT_EQ(result.packets.size(), 1U);
-    pid = std::stoi(std::string(result.packets[0].begin(), result.packets[0].end()));
-    EXPECT_EQ(::kill(pid, 0), 0);
-    child->close();
-  }
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
-  const auto is_alive = [pid] {
+  const auto is_alive = [](int pid) {
     std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
     std::string line;
     return std::getline(file, line) && line.at(line.rfind(')') + 2) != 'Z';
   };
-  while (is_alive() && std::chrono::steady_clock::now() < deadline)
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  EXPECT_FALSE(is_alive());
+  for (const std::uint8_t fault : {8, 11}) {
+    const auto child = library_in_child(kLibraries + "libvbar_article_with_faults.so", fault);
+    const StepResult result = child->step(0, vbar::test::step_packets(0, 3));
+    ASSERT_EQ(result.packets.size(), 1U);
+    const int pid = std::stoi(std::string(result.packets[0].begin(), result.packets[0].end()));
+    EXPECT_TRUE(is_alive(pid));
+    child->close();
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+    while (is_alive(pid) && std::chrono::steady_clock::now() < deadline)
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    EXPECT_FALSE(is_alive(pid)) << "fault " << int{fault};
+  }
 }
 
 // What an article asks for is checked before it is allocated.

@@ -1,6 +1,7 @@
 #include "host_sim/io/child_process.h"
 
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -12,6 +13,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -53,10 +55,64 @@ TEST(ChildProcess, TellsExitStatusAndOutput) {
   EXPECT_EQ(child.output_tail(9), "to error\n");
 }
 
+// A program that prints without end would take all memory.
+TEST(ChildProcess, KeepsTheLastOutputOnly) {
+  ChildProcess child({"sh", "-c", "head -c 300000000 /dev/zero; echo last"}, {});
+  ASSERT_TRUE(child.wait_for_end(std::chrono::seconds(60)));
+  EXPECT_TRUE(child.has_ended());
+  EXPECT_EQ(child.output_tail(5), "last\n");
+  std::size_t found = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    std::error_code closed;  // the iterator's own descriptor
+    if (!std::filesystem::read_symlink(entry.path(), closed).string().starts_with("/memfd:vbar child output")) continue;
+    struct stat info {};
+    ASSERT_EQ(::stat(entry.path().c_str(), &info), 0);
+    EXPECT_LT(info.st_blocks * 512, 100'000'000);
+    ++found;
+  }
+  EXPECT_EQ(found, 1U);
+}
+
 TEST(ChildProcess, LeavesNothingBehindThatItStarted) {
   ChildProcess child({"sh", "-c", "sleep 1000 & echo $!"}, {});
   ASSERT_TRUE(child.wait_for_end(kLong));
   EXPECT_TRUE(ends_within(std::stoi(child.output_tail()), kLong));
+}
+
+TEST(ChildProcess, LeavesNothingBehindInAnotherSession) {
+  ChildProcess child({"sh", "-c", "setsid sh -c 'sleep 1000 & echo $!'"}, {});
+  ASSERT_TRUE(child.wait_for_end(kLong));
+  EXPECT_TRUE(ends_within(std::stoi(child.output_tail()), kLong));
+  EXPECT_EQ(::waitid(P_ALL, 0, nullptr, WEXITED | WNOHANG | WNOWAIT), -1) << "a child or a zombie is left";
+}
+
+// A daemon's first process ends at once: its second one is the leader's until the leader ends.
+TEST(ChildProcess, WhatALivingChildHasLeftLivesAsLongAsItself) {
+  pid_t daemon = -1;
+  {
+    ChildProcess child({"sh", "-c", "setsid sh -c 'sleep 1000 & echo $!'; exec sleep 1000"}, {});
+    while (child.output_tail().find('\n') == std::string::npos) std::this_thread::sleep_for(milliseconds(1));
+    daemon = std::stoi(child.output_tail());
+    ChildProcess other({"true"}, {});
+    ASSERT_TRUE(other.wait_for_end(kLong));
+    EXPECT_TRUE(is_alive(daemon));
+  }
+  EXPECT_FALSE(is_alive(daemon));
+}
+
+TEST(ChildProcess, EndsNoProcessThatItDidNotStart) {
+  const pid_t foreign = ::fork();
+  ASSERT_GE(foreign, 0);
+  if (foreign == 0) {
+    for (;;) ::pause();
+  }
+  {
+    ChildProcess child({"true"}, {});
+    ASSERT_TRUE(child.wait_for_end(kLong));
+  }
+  EXPECT_TRUE(is_alive(foreign));
+  ::kill(foreign, SIGKILL);
+  ::waitpid(foreign, nullptr, 0);
 }
 
 TEST(ChildProcess, AnAllocationBeyondItsMemoryFails) {
