@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "fsw/packets/messages.h"
+#include "host_sim/mission/spacecraft_number.h"
 
 namespace vbar::external {
 namespace {
@@ -235,7 +236,8 @@ std::string SpacecraftNumbers::name_of(std::uint8_t number) const {
 
 SpacecraftNumbers numbers_of(const mission::Mission& mission) {
   SpacecraftNumbers numbers;
-  for (const mission::Spacecraft& spacecraft : mission.spacecraft) numbers.add(spacecraft.name, spacecraft.number);
+  for (const mission::Spacecraft& spacecraft : mission.spacecraft)
+    if (spacecraft.number != mission::kNoSpacecraftNumber) numbers.add(spacecraft.name, spacecraft.number);
   return numbers;
 }
 

@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <optional>
+#include <unordered_set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,12 +15,13 @@
 #include "host_sim/mission/name_search.h"
 #include "host_sim/mission/read_attitude.h"
 #include "host_sim/mission/read_sections.h"
+#include "host_sim/mission/spacecraft_number.h"
 
 namespace vbar::mission {
 
 namespace {
 
-constexpr int kMaxSpacecraft = 255;  // range of the numbers in packet headers
+constexpr int kMaxSpacecraft = 10'000;
 constexpr double kTurn_deg = 360.0;
 
 }  // namespace
@@ -208,55 +211,73 @@ Thruster read_thruster(const TableReader& section) {
   return thruster;
 }
 
-std::uint8_t read_number(const TableReader& section, const Member& member, const Mission& mission) {
-  constexpr std::int64_t kLargest = 255;
-  const auto place = static_cast<std::int64_t>(mission.spacecraft.size()) + 1;
-  std::int64_t number = std::min(place, kLargest);
-  if (section.has("number")) number = section.integer("number", 1, kLargest) + member.index;
-  if (number > kLargest)
+/// Names of the spacecraft of all sections, and the place in the mission of the owner of each number.
+struct Fleet {
+  std::vector<std::string> names;
+  std::unordered_set<std::string> known_names;
+  std::array<std::optional<std::size_t>, kMaxSpacecraftNumber + 1> owner_of_number{};
+};
+
+/// The default is the place in the file, as far as packet headers can state it.
+std::uint8_t read_number(const TableReader& section, const Member& member, const Mission& mission, Fleet& fleet) {
+  const std::size_t place = mission.spacecraft.size() + 1;
+  std::int64_t number = place <= kMaxSpacecraftNumber ? static_cast<std::int64_t>(place) : kNoSpacecraftNumber;
+  if (section.has("number")) number = section.integer("number", 1, kMaxSpacecraftNumber) + member.index;
+  if (number > kMaxSpacecraftNumber)
     section.refuse("number", std::to_string(number) + " for " + member.group.member_name(member.index),
-                   "numbers up to 255");
-  for (const Spacecraft& other : mission.spacecraft)
-    if (other.number == number)
-      section.refuse("number", "the number " + std::to_string(number) + " of " + other.name, "a number used once");
+                   "numbers up to " + std::to_string(kMaxSpacecraftNumber));
+  if (number == kNoSpacecraftNumber) {
+    if (section.has("flight_computer") || section.has("sensors"))
+      section.refuse("number", fmt::format("nothing for spacecraft {} of the file, whose packets need a number", place),
+                     fmt::format("a number from 1 to {} that is used once", kMaxSpacecraftNumber));
+    return kNoSpacecraftNumber;
+  }
+  std::optional<std::size_t>& owner = fleet.owner_of_number[static_cast<std::size_t>(number)];
+  if (owner)
+    section.refuse("number", fmt::format("the number {} of {}", number, mission.spacecraft[*owner].name),
+                   "a number used once");
+  owner = mission.spacecraft.size();
   return static_cast<std::uint8_t>(number);
 }
 
-Spacecraft read_one(TableReader& section, const Member& member, const std::vector<std::string>& names,
-                    const Mission& mission, const Installation& installation) {
+Spacecraft read_one(TableReader& section, const Member& member, Fleet& fleet, const Mission& mission,
+                    const Installation& installation) {
   Spacecraft spacecraft;
   spacecraft.name = member.group.member_name(member.index);
-  spacecraft.number = read_number(section, member, mission);
+  spacecraft.number = read_number(section, member, mission, fleet);
   spacecraft.body = read_body(section, mission, installation);
   spacecraft.surface = read_surface(section, member, spacecraft.body);
   spacecraft.mass_sigma_kg = section.number("mass_sigma_kg", from_to(0.0, 1e3), 0.0);
   if (section.has("model")) spacecraft.model = section.name("model");
   spacecraft.orbit = read_orbit(section, member, mission);
   const TableReader attitude = section.table("attitude");
-  spacecraft.attitude = read_attitude(attitude, spacecraft.name, spacecraft.body, names);
+  spacecraft.attitude = read_attitude(attitude, spacecraft.name, spacecraft.body, fleet.names);
   spacecraft.later_attitudes = read_later_attitudes(attitude, spacecraft.attitude);
   if (section.has("flight_computer"))
     spacecraft.flight_computer = read_flight_computer(section.table("flight_computer"));
 
-  spacecraft.sensors = read_sensors(section.table("sensors"), {mission, installation, spacecraft.name, names});
+  spacecraft.sensors = read_sensors(section.table("sensors"), {mission, installation, spacecraft.name, fleet.names});
   const TableReader actuators = section.table("actuators");
   if (actuators.has("thruster")) spacecraft.thruster = read_thruster(actuators.table("thruster"));
   return spacecraft;
 }
 
-void read_section(TableReader& section, const SpacecraftGroup& group, const std::vector<std::string>& names,
-                  Mission& mission, const Installation& installation) {
+void read_section(TableReader& section, const SpacecraftGroup& group, Fleet& fleet, Mission& mission,
+                  const Installation& installation) {
   for (int index = 0; index < group.count(); ++index)
-    mission.spacecraft.push_back(read_one(section, {group, index}, names, mission, installation));
+    mission.spacecraft.push_back(read_one(section, {group, index}, fleet, mission, installation));
   section.finish();
 }
 
-void add_names(const TableReader& section, const SpacecraftGroup& group, std::vector<std::string>& names) {
+void add_names(const TableReader& section, const SpacecraftGroup& group, Fleet& fleet) {
+  if (const std::size_t total = fleet.names.size() + static_cast<std::size_t>(group.count()); total > kMaxSpacecraft)
+    section.refuse("count", fmt::format("{} spacecraft up to here", total),
+                   fmt::format("up to {} in a mission", kMaxSpacecraft));
   for (int index = 0; index < group.count(); ++index) {
     const std::string name = group.member_name(index);
-    if (std::find(names.begin(), names.end(), name) != names.end())
+    if (!fleet.known_names.insert(name).second)
       section.refuse("name", "a second spacecraft \"" + name + "\"", "a name used once");
-    names.push_back(name);
+    fleet.names.push_back(name);
   }
 }
 
@@ -267,19 +288,17 @@ void read_spacecraft(const TableReader& document, Mission& mission, const Instal
   if (sections.empty()) document.refuse("spacecraft", "nothing", "at least one [[spacecraft]]");
   // All names, before anything else: a sensor may look at a spacecraft further down.
   std::vector<SpacecraftGroup> groups;
-  std::vector<std::string> names;
+  Fleet fleet;
   for (TableReader& section : sections) {
     const SpacecraftGroup& group = groups.emplace_back(section);
-    add_names(section, group, names);
+    add_names(section, group, fleet);
     section.rename("spacecraft." + group.name());
   }
-  for (std::size_t k = 0; k < sections.size(); ++k) read_section(sections[k], groups[k], names, mission, installation);
-  for (std::size_t k = 0; k < sections.size(); ++k) {
-    for (int index = 0; index < groups[k].count(); ++index) {
-      const Spacecraft& spacecraft = *mission.find_spacecraft(groups[k].member_name(index));
-      check_sensors(sections[k].table("sensors"), spacecraft, mission, installation);
-    }
-  }
+  for (std::size_t k = 0; k < sections.size(); ++k) read_section(sections[k], groups[k], fleet, mission, installation);
+  auto spacecraft = mission.spacecraft.cbegin();
+  for (std::size_t k = 0; k < sections.size(); ++k)
+    for (int index = 0; index < groups[k].count(); ++index)
+      check_sensors(sections[k].table("sensors"), *spacecraft++, mission, installation);
 }
 
 }  // namespace vbar::mission

@@ -243,12 +243,16 @@ void PropagationFolder::append(std::size_t spacecraft, const EphemerisRow& row) 
 }
 
 void PropagationFolder::finish(const PropagationRecord& record) {
-  if (record.complete) {
-    for (EphemerisCsv& file : csv_) file.finish();
-    for (OemFile& file : oem_) file.finish();
+  const auto end = [&](auto& ephemerides) {
+    for (auto& file : ephemerides) record.complete ? file.finish() : file.flush();
+    ephemerides.clear();
+  };
+  try {
+    end(csv_);
+    end(oem_);
+  } catch (const std::runtime_error&) {
+    if (record.complete) throw;  // otherwise the record states a reason already
   }
-  csv_.clear();  // parts are closed, and so whole up to where they end
-  oem_.clear();
   files::replace_text_file(folder_ / kSummary, propagation_json(record, file_names_));
 }
 

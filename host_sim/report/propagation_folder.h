@@ -9,7 +9,7 @@
 
 #include "fsw/core/gps_time.h"
 #include "fsw/orbit/elements.h"
-#include "host_sim/files/output_file.h"
+#include "host_sim/files/released_file.h"
 #include "host_sim/truth/earth/earth_rotation.h"
 #include "host_sim/truth/truth_model.h"
 
@@ -41,7 +41,7 @@ struct PropagationRecord {
   std::vector<std::string> data_notes;  ///< on data that are missing, predicted or used in part
   std::vector<PropagatedSpacecraft> spacecraft;
   truth::TruthStatistics total;
-  std::vector<truth::ForceTime> force_times;  ///< summed over spacecraft, so over threads too
+  std::vector<truth::ForceTime> force_times;  ///< with that of "sampling" last; summed over spacecraft and so threads
 };
 
 // A spacecraft's ephemeris as a CSV file, one row a sampling time.
@@ -53,10 +53,11 @@ class EphemerisCsv {
   /// Throws std::runtime_error that names the file, as the others do.
   explicit EphemerisCsv(const std::filesystem::path& file);
   void append(const EphemerisRow& row);
+  void flush() { file_.flush(); }
   void finish() { file_.finish(); }
 
  private:
-  files::PartialFile file_;
+  files::ReleasedFile file_;
 };
 
 // A spacecraft's ephemeris as a CCSDS Orbit Ephemeris Message in keyword = value notation (CCSDS 502.0-B-2, section 5),
@@ -79,10 +80,11 @@ class OemFile {
 
   /// Rows in order of time.
   void append(const EphemerisRow& row);
+  void flush() { file_.flush(); }
   void finish() { file_.finish(); }
 
  private:
-  files::PartialFile file_;
+  files::ReleasedFile file_;
 };
 
 // A propagation in short: as a table for people and as JSON for programs.
@@ -105,7 +107,8 @@ class PropagationFolder {
   /// Starts `<name>.csv` of each spacecraft, and `<name>.oem` if `oem` is given.
   void start_files(std::span<const std::string> names, const OemFile::Span* oem);
 
-  /// Appends a row to the ephemeris of a spacecraft, given by its place among the names.
+  /// Appends a row to the ephemeris of a spacecraft, given by its place among the names. From any thread, one at a time
+  /// for one spacecraft.
   void append(std::size_t spacecraft, const EphemerisRow& row);
 
   /// Gives the files their names if the propagation is complete, then writes propagation.json.

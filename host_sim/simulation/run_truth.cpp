@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -124,8 +125,12 @@ Propagation::Propagation(const mission::Mission& mission, const std::filesystem:
       truth_(truth_settings(mission, data_directory)),
       earth_rotation_(truth_.data().earth_orientation, mission.epoch) {
   place_spacecraft(mission, data_directory, truth_);
-  for (const mission::Spacecraft& spacecraft : mission.spacecraft)
-    truth_index_.push_back(truth_.index_of(spacecraft.name));
+  mission_place_.resize(mission.spacecraft.size());
+  for (const mission::Spacecraft& spacecraft : mission.spacecraft) {
+    const std::size_t index = truth_.index_of(spacecraft.name);
+    mission_place_[index] = truth_index_.size();
+    truth_index_.push_back(index);
+  }
 }
 
 std::vector<fsw::GpsTime> Propagation::sampling_times() const {
@@ -148,20 +153,44 @@ fsw::Vector3 Propagation::drag_eci(std::size_t truth_index) {
   return drag == shares.end() ? fsw::Vector3::Zero().eval() : drag->acceleration_eci;
 }
 
-void Propagation::sample(std::vector<DecayMeter>& decay, const RowSink& sink, report::PropagationRecord& record) {
+/// Returns a number that makes the start of threads, and the memory of a spacecraft that the processor's caches no
+/// longer hold, cheap beside the work, and a stop prompt.
+std::size_t Propagation::samplings_at_once() const {
+  // Of all spacecraft together; each bound is a tenth of a second of work or so.
+  constexpr double kSimulated_s = 1e5, kRows = 1e4;
+  constexpr double kMin = 16.0;
+  const double step_s = fsw::seconds(mission_.step.next_after(mission_.start_time()) - mission_.start_time());
+  const double rows = std::min(kSimulated_s / step_s, kRows);
+  return static_cast<std::size_t>(std::max(rows / static_cast<double>(mission_.spacecraft.size()), kMin));
+}
+
+report::EphemerisRow Propagation::row_at(const Sampling& sampling, std::size_t truth_index) const {
   report::EphemerisRow row;
-  row.time = truth_.time();
-  row.time_s = fsw::seconds(row.time - mission_.epoch);
-  const fsw::Matrix3 R_itrf_gcrf = earth_rotation_.R_itrf_gcrf_at(row.time_s);
-  for (std::size_t k = 0; k < truth_index_.size(); ++k) {
-    row.state = truth_.state(truth_index_[k]);
-    row.geodetic = truth::geodetic_from_itrf(R_itrf_gcrf * row.state.position_eci);
-    if (mission_.truth.forces.drag) decay[k].add(row.time_s, row.state, drag_eci(truth_index_[k]));
+  row.time = sampling.time;
+  row.time_s = sampling.time_s;
+  row.state = truth_.state(truth_index);
+  row.geodetic = truth::geodetic_from_itrf(sampling.R_itrf_gcrf * row.state.position_eci);
+  return row;
+}
+
+void Propagation::fly_through(std::span<const fsw::GpsTime> times, std::vector<DecayMeter>& decay, const RowSink& sink,
+                              report::PropagationRecord& record) {
+  std::vector<Sampling> samplings;
+  for (const fsw::GpsTime time : times) {
+    const double time_s = fsw::seconds(time - mission_.epoch);
+    samplings.push_back({time, time_s, earth_rotation_.R_itrf_gcrf_at(time_s)});
+  }
+  truth_.advance_through(times, [&](std::size_t index, std::size_t place) {
+    const auto started = std::chrono::steady_clock::now();
+    const std::size_t k = mission_place_[index];
+    const report::EphemerisRow row = row_at(samplings[place], index);
+    if (mission_.truth.forces.drag) decay[k].add(row.time_s, row.state, drag_eci(index));
     report::PropagatedSpacecraft& outcome = record.spacecraft[k];
     if (row.time == mission_.start_time()) outcome.first_altitude_m = row.geodetic.altitude;
     outcome.last_altitude_m = row.geodetic.altitude;
     sink(k, row);
-  }
+    sampling_s_[k] += std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  });
 }
 
 report::PropagationRecord Propagation::run(const RowSink& sink, const std::function<void(fsw::Duration)>& progress,
@@ -176,6 +205,7 @@ report::PropagationRecord Propagation::run(const RowSink& sink, const std::funct
     record.spacecraft.emplace_back().name = mission_.spacecraft[k].name;
     decay.emplace_back(truth_.data().gravity->gm());
   }
+  sampling_s_.assign(truth_index_.size(), 0.0);
   std::vector<truth::TruthStatistics> at_start(truth_index_.size());
   truth::TruthStatistics total_at_start;
   try {
@@ -186,15 +216,17 @@ report::PropagationRecord Propagation::run(const RowSink& sink, const std::funct
     total_at_start = truth_.statistics();
     truth_.measure_force_times(true);
     record.complete = true;
-    for (const fsw::GpsTime time : sampling_times()) {
+    const std::vector<fsw::GpsTime> times = sampling_times();
+    for (std::size_t first = 0; first < times.size();) {
       if (stop_requested && stop_requested()) {
         record.complete = false;
         record.incomplete_reason = kInterruption;
         break;
       }
-      truth_.advance_to(time);
-      sample(decay, sink, record);
-      if (progress) progress(time - mission_.start_time());
+      const std::size_t count = std::min(samplings_at_once(), times.size() - first);
+      fly_through(std::span(times).subspan(first, count), decay, sink, record);
+      first += count;
+      if (progress) progress(truth_.time() - mission_.start_time());
     }
   } catch (const std::exception& error) {
     record.complete = false;
@@ -206,6 +238,7 @@ report::PropagationRecord Propagation::run(const RowSink& sink, const std::funct
   }
   record.total = since(total_at_start, truth_.statistics());
   record.force_times = truth_.force_times();
+  record.force_times.push_back({"sampling", std::accumulate(sampling_s_.begin(), sampling_s_.end(), 0.0)});
   record.simulated_s = fsw::seconds(truth_.time() - mission_.start_time());
   record.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   return record;

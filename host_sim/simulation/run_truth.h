@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -54,7 +55,7 @@ class Propagation {
   /// PropagationRecord::incomplete_reason of one that was stopped.
   static constexpr const char* kInterruption = "interrupted";
 
-  /// Receives each row, in order of time and, at one time, of the mission's spacecraft.
+  /// Receives each row: those of one spacecraft in order of time, those of different ones from several threads at once.
   using RowSink = std::function<void(std::size_t spacecraft, const report::EphemerisRow& row)>;
 
   /// Loads the data and puts the spacecraft on their orbits. `mission` must outlive it. Throws what TruthModel and
@@ -66,20 +67,32 @@ class Propagation {
   [[nodiscard]] std::vector<std::string> names() const;
 
   /// Flies. A spacecraft that re-enters, and whatever else stops the truth, makes the record incomplete, as does
-  /// `stop_requested`, asked at each sampling time. `progress` receives the simulated span.
+  /// `stop_requested`, asked after each tenth of a second of work or so. `progress` receives the simulated span.
   report::PropagationRecord run(const RowSink& sink, const std::function<void(fsw::Duration)>& progress,
                                 const std::function<bool()>& stop_requested);
 
  private:
   class DecayMeter;
 
+  /// A sampling time and the Earth's orientation then.
+  struct Sampling {
+    fsw::GpsTime time;
+    double time_s = 0.0;  ///< since the mission's epoch
+    fsw::Matrix3 R_itrf_gcrf;
+  };
+
+  [[nodiscard]] std::size_t samplings_at_once() const;
   [[nodiscard]] fsw::Vector3 drag_eci(std::size_t truth_index);
-  void sample(std::vector<DecayMeter>& decay, const RowSink& sink, report::PropagationRecord& record);
+  [[nodiscard]] report::EphemerisRow row_at(const Sampling& sampling, std::size_t truth_index) const;
+  void fly_through(std::span<const fsw::GpsTime> times, std::vector<DecayMeter>& decay, const RowSink& sink,
+                   report::PropagationRecord& record);
 
   const mission::Mission& mission_;
   truth::TruthModel truth_;
   truth::EarthRotation earth_rotation_;
-  std::vector<std::size_t> truth_index_;  ///< index in the truth of each spacecraft of the mission
+  std::vector<std::size_t> truth_index_;    ///< index in the truth of each spacecraft of the mission
+  std::vector<std::size_t> mission_place_;  ///< place in the mission of each spacecraft of the truth
+  std::vector<double> sampling_s_;          ///< time spent on the rows of each spacecraft of the mission, drag included
 };
 
 }  // namespace vbar::app

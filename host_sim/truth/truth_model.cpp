@@ -65,8 +65,7 @@ TruthModel::TruthModel(const TruthSettings& settings) : settings_(settings), tim
 
 std::size_t TruthModel::add_spacecraft(const SpacecraftSettings& spacecraft) {
   const std::string& name = spacecraft.name;
-  const auto same_name = [&](const auto& other) { return other->name() == name; };
-  if (name.empty() || std::any_of(spacecraft_.begin(), spacecraft_.end(), same_name)) {
+  if (name.empty() || index_of_name_.contains(name)) {
     throw std::invalid_argument(fmt::format("spacecraft name \"{}\" is empty or used twice", name));
   }
   auto dynamics = std::make_unique<SpacecraftDynamics>(name, data_.gravity->gm(), data_.gravity->radius(),
@@ -75,14 +74,14 @@ std::size_t TruthModel::add_spacecraft(const SpacecraftSettings& spacecraft) {
   dynamics->measure_time(measures_force_times_);
   spacecraft_.push_back(std::make_unique<SpacecraftPropagator>(std::move(dynamics), settings_.tolerance,
                                                                seconds_after_epoch(time_), spacecraft.osculating));
+  index_of_name_.emplace(name, spacecraft_.size() - 1);
   return spacecraft_.size() - 1;
 }
 
 std::size_t TruthModel::index_of(std::string_view name) const {
-  for (std::size_t i = 0; i < spacecraft_.size(); ++i) {
-    if (spacecraft_[i]->name() == name) return i;
-  }
-  throw std::invalid_argument(fmt::format("there is no spacecraft \"{}\"", name));
+  const auto found = index_of_name_.find(name);
+  if (found == index_of_name_.end()) throw std::invalid_argument(fmt::format("there is no spacecraft \"{}\"", name));
+  return found->second;
 }
 
 void TruthModel::advance_to(fsw::GpsTime time) {
@@ -94,34 +93,68 @@ void TruthModel::advance_to(fsw::GpsTime time) {
     if (spacecraft->needs_steps_to(seconds)) behind.push_back(spacecraft.get());
   }
   const double work_s = static_cast<double>(behind.size()) * fsw::seconds(time - time_);
-  if (settings_.threads > 1 && behind.size() > 1 && work_s > kWorthThreads_s) advance_in_parallel(behind, seconds);
+  if (settings_.threads > 1 && behind.size() > 1 && work_s > kWorthThreads_s) {
+    std::vector<std::exception_ptr> errors(behind.size());
+    work_in_parallel(behind.size(), [&](std::size_t i) {
+      try {
+        behind[i]->advance_to(seconds);
+      } catch (...) {
+        errors[i] = std::current_exception();
+      }
+    });
+    // The error of the same spacecraft whichever thread threw first.
+    for (const auto& error : errors) {
+      if (error) std::rethrow_exception(error);
+    }
+  }
   for (const auto& spacecraft : spacecraft_) spacecraft->advance_to(seconds);
   time_ = time;
 }
 
-void TruthModel::advance_in_parallel(const std::vector<SpacecraftPropagator*>& spacecraft, double seconds) const {
-  std::vector<std::exception_ptr> errors(spacecraft.size());
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t i = next++; i < spacecraft.size(); i = next++) {
+void TruthModel::advance_through(std::span<const fsw::GpsTime> times,
+                                 const std::function<void(std::size_t index, std::size_t place)>& at) {
+  if (times.empty()) return;
+  if (times.front() < time_) throw std::invalid_argument("the truth does not go back in time");
+  const WallClock clock(wall_s_);
+  struct Failure {
+    std::size_t place = 0;
+    std::exception_ptr error;
+  };
+  std::vector<Failure> failures(spacecraft_.size());
+  work_in_parallel(spacecraft_.size(), [&](std::size_t index) {
+    for (std::size_t place = 0; place < times.size(); ++place) {
       try {
-        spacecraft[i]->advance_to(seconds);
+        spacecraft_[index]->advance_to(seconds_after_epoch(times[place]));
+        at(index, place);
       } catch (...) {
-        errors[i] = std::current_exception();
+        failures[index] = {place, std::current_exception()};
+        return;
       }
     }
+  });
+  const Failure* first = nullptr;
+  for (const Failure& failure : failures)
+    if (failure.error && (first == nullptr || failure.place < first->place)) first = &failure;
+  if (first == nullptr) {
+    time_ = times.back();
+    return;
+  }
+  if (first->place > 0) time_ = times[first->place - 1];
+  std::rethrow_exception(first->error);
+}
+
+/// Calls `work`, which does not throw, for 0 to `count` - 1.
+void TruthModel::work_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work) const {
+  std::atomic<std::size_t> next{0};
+  const auto take_work = [&] {
+    for (std::size_t i = next++; i < count; i = next++) work(i);
   };
-  {
-    const std::size_t helpers = std::min(static_cast<std::size_t>(settings_.threads), spacecraft.size()) - 1;
-    std::vector<std::jthread> threads;
-    threads.reserve(helpers);
-    for (std::size_t i = 0; i < helpers; ++i) threads.emplace_back(work);
-    work();
-  }
-  // The error of the same spacecraft whichever thread threw first.
-  for (const auto& error : errors) {
-    if (error) std::rethrow_exception(error);
-  }
+  const std::size_t helpers =
+      std::min(static_cast<std::size_t>(settings_.threads), std::max(count, std::size_t{1})) - 1;
+  std::vector<std::jthread> threads;
+  threads.reserve(helpers);
+  for (std::size_t i = 0; i < helpers; ++i) threads.emplace_back(take_work);
+  take_work();
 }
 
 fsw::orbit::CartesianState TruthModel::state(std::size_t index) const {

@@ -3,7 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -30,7 +33,7 @@ struct TruthStatistics {
 
 /// Truth of all spacecraft. Every spacecraft has its own integrator with the same settings, and its steps depend on its
 /// own state and impulses only: not on the times asked for, the other spacecraft, or the number of threads. All calls
-/// from one thread.
+/// from one thread, but for those that advance_through() allows.
 class TruthModel {
  public:
   /// Loads the data. Throws std::invalid_argument for a setting out of range, std::runtime_error for a missing or
@@ -62,6 +65,14 @@ class TruthModel {
   /// std::domain_error if a spacecraft re-enters or leaves its ellipse, std::out_of_range if the Earth orientation data
   /// end; the model must not be used any more.
   void advance_to(fsw::GpsTime time);
+
+  /// Moves all spacecraft to each of `times`, which ascend, and calls `at(index, place)` when a spacecraft is at
+  /// times[place]: in order of time for one spacecraft, for several at once, from the threads of the settings. What is
+  /// called may ask for state(index) and accelerations(index) of that spacecraft only. If spacecraft fail, the others
+  /// reach the last time, time() is the last one that all have reached, and the first failure is thrown as by
+  /// advance_to(); the model must not be used any more.
+  void advance_through(std::span<const fsw::GpsTime> times,
+                       const std::function<void(std::size_t index, std::size_t place)>& at);
 
   fsw::GpsTime time() const { return time_; }
 
@@ -121,13 +132,14 @@ class TruthModel {
   double seconds_after_epoch(fsw::GpsTime time) const { return fsw::seconds(time - settings_.epoch); }
   fsw::Vector3 perturbation_eci(std::size_t index) const;
   std::unique_ptr<AttitudeMotion> attitude_motion(std::size_t index, const AttitudeSettings& settings);
-  void advance_in_parallel(const std::vector<SpacecraftPropagator*>& spacecraft, double seconds) const;
+  void work_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work) const;
 
   TruthSettings settings_;
   fsw::GpsTime time_;
   ForceData data_;
   bool measures_force_times_ = false;
   std::vector<std::unique_ptr<SpacecraftPropagator>> spacecraft_;
+  std::map<std::string, std::size_t, std::less<>> index_of_name_;
   double wall_s_ = 0.0;
 };
 

@@ -17,6 +17,7 @@
 #include "host_sim/installation/sensor_kinds.h"
 #include "host_sim/simulation/assembly.h"
 #include "host_sim/simulation/flight_computer.h"
+#include "host_sim/simulation/run_truth.h"
 #include "tests/support/paths.h"
 #include "tests/unit/host_sim/campaign_report/synthetic_campaign.h"
 
@@ -107,6 +108,30 @@ void gnc_step(benchmark::State& state, const char* name) {
                                               benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
+/// An hour of a swarm with its files, by number of spacecraft and of threads.
+void propagate_swarm(benchmark::State& state) {
+  const std::vector<std::string> overrides{"mission.duration_h=1",
+                                           "spacecraft.swarm.count=" + std::to_string(state.range(0)),
+                                           "truth.threads=" + std::to_string(state.range(1))};
+  const mission::Mission mission = sensors::load_mission(kRoot + "/missions/swarm_of_fifty.toml", overrides);
+  const std::filesystem::path out =
+      std::filesystem::temp_directory_path() / ("vbar_swarm_bench_" + std::to_string(::getpid()));
+  for (auto _ : state) {
+    app::Propagation propagation(mission, kRoot + "/data");
+    vbar::report::PropagationFolder folder(out, mission.name);
+    folder.start_files(propagation.names(), nullptr);
+    folder.finish(
+        propagation.run([&](std::size_t k, const vbar::report::EphemerisRow& row) { folder.append(k, row); }, {}, {}));
+  }
+  std::filesystem::remove_all(out);
+}
+
+BENCHMARK(propagate_swarm)
+    ->Name("truth/vbar/swarm")
+    ->ArgsProduct({{50, 255, 1000}, {1, 2}})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
 BENCHMARK_CAPTURE(whole_mission, ideal, "ideal_navigation")
     ->Name("mission/ideal_navigation")
     ->Unit(benchmark::kMillisecond)

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "host_sim/mission/read_sections.h"
+#include "host_sim/mission/spacecraft_number.h"
 #include "tests/support/paths.h"
 #include "tests/unit/host_sim/mission/mission_text.h"
 
@@ -71,8 +72,10 @@ TEST(SpacecraftGroup, BadOnesEndWithOneMessage) {
   const auto message = [](std::string_view what, std::string_view by) { return message_of(changed(kSwarm, what, by)); };
   EXPECT_EQ(message("count = 12\n", ""),
             "m.toml:4: spacecraft.0.count: found nothing; accepted: how many spacecraft the spacing is for");
-  EXPECT_EQ(message("count = 12", "count = 256"),
-            "m.toml:6: spacecraft.0.count: found the integer 256; accepted: an integer from 1 to 255");
+  EXPECT_EQ(message("count = 12", "count = 10001"),
+            "m.toml:6: spacecraft.0.count: found the integer 10001; accepted: an integer from 1 to 10000");
+  EXPECT_EQ(message("\"observer\"", "\"observer\"\ncount = 9989"),
+            "m.toml:19: spacecraft.1.count: found 10001 spacecraft up to here; accepted: up to 10000 in a mission");
   EXPECT_EQ(
       message("inclination_deg = 0.5", "inclination_deg = 12.0"),
       "m.toml:8: spacecraft.swarm.spacing.inclination_deg: found 180 for swarm_11; accepted: a number from 0.01 to "
@@ -88,6 +91,27 @@ TEST(SpacecraftGroup, BadOnesEndWithOneMessage) {
             "m.toml:18: spacecraft.1.name: found a second spacecraft \"swarm_07\"; accepted: a name used once");
   EXPECT_EQ(message("mass_kg = 10.0", "mass_kg = 10.0\nnumber = 250"),
             "m.toml:8: spacecraft.swarm.number: found 256 for swarm_07; accepted: numbers up to 255");
+}
+
+TEST(SpacecraftGroup, HasAsManyMembersAsThereAreSpacecraftAndNumbersAsFarAsHeadersStateThem) {
+  const std::vector<std::string> overrides{"spacecraft.swarm.count=9999",
+                                           "spacecraft.swarm.spacing.inclination_deg=0.001"};
+  const Mission mission = parse_mission(kSwarm, "m.toml", overrides);
+  ASSERT_EQ(mission.spacecraft.size(), 10'000U);
+  EXPECT_EQ(mission.spacecraft[254].name, "swarm_0255");
+  EXPECT_EQ(mission.spacecraft[254].number, 255);
+  EXPECT_EQ(mission.spacecraft[255].number, kNoSpacecraftNumber);
+  EXPECT_EQ(mission.spacecraft[9998].name, "swarm_9999");
+  EXPECT_EQ(mission.spacecraft[9999].number, kNoSpacecraftNumber);
+}
+
+TEST(SpacecraftGroup, BeyondTheRangeOfNumbersCarriesNoSensorsWithoutOne) {
+  const std::string many = changed(kSwarm, "count = 12", "count = 300");
+  const std::string text =
+      changed(many, "inclination_deg = 0.5", "inclination_deg = 0.1") + "sensors.navigation = {}\n";
+  EXPECT_THAT(message_of(text),
+              testing::HasSubstr("spacecraft.observer.number: found nothing for spacecraft 301 of the file, whose "
+                                 "packets need a number; accepted: a number from 1 to 255 that is used once"));
 }
 
 TEST(SpacecraftGroup, CannotStandAtOneWaypoint) {

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/resource.h>
 
 #include "host_sim/report/csv_table.h"
 #include "host_sim/report/propagation_folder.h"
@@ -171,6 +172,29 @@ TEST_F(Propagated, AFolderIsWholeOnlyIfThePropagationIs) {
     const std::string name = file.get<std::string>();
     EXPECT_TRUE(std::filesystem::exists(scratch_ / "out" / name)) << name;
     EXPECT_FALSE(std::filesystem::exists(scratch_ / "out" / (name + ".part"))) << "of the run before";
+  }
+}
+
+TEST_F(Propagated, AFolderHoldsMoreEphemeridesThanFilesMayBeOpen) {
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  rlimit few = before;
+  few.rlim_cur = 32;
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &few), 0);
+  std::vector<std::string> names;
+  for (int k = 0; k < 100; ++k) names.push_back("s" + std::to_string(k));
+  constexpr int kRows = 200;  // more than are kept in memory
+  PropagationFolder folder(scratch_ / "out", "m");
+  folder.start_files(names, nullptr);
+  for (int row = 0; row < kRows; ++row)
+    for (std::size_t k = 0; k < names.size(); ++k) folder.append(k, row_at(row));
+  folder.finish(record_of(true));
+  setrlimit(RLIMIT_NOFILE, &before);
+  for (const std::string& name : names) {
+    const auto lines = read_lines(scratch_ / "out" / (name + ".csv"));
+    ASSERT_EQ(lines.size(), 1U + kRows) << name;
+    for (int row = 0; row < kRows; ++row)
+      EXPECT_TRUE(lines[static_cast<std::size_t>(row) + 1].starts_with(std::to_string(row) + ",")) << name;
   }
 }
 

@@ -89,6 +89,46 @@ TEST(TruthModel, ThreadsDoNotChangeABit) {
   }
 }
 
+TEST(TruthModel, SpacecraftThatAdvanceOneByOneHaveTheStatesOfSpacecraftThatAdvanceTogether) {
+  std::vector<fsw::GpsTime> times;
+  for (int k = 0; k <= 40; ++k) times.push_back(after(100.0 * k));
+  TruthModel together = two_spacecraft();
+  std::vector<std::vector<CartesianState>> expected(2);
+  for (const fsw::GpsTime time : times) {
+    together.advance_to(time);
+    for (std::size_t index : {0u, 1u}) expected[index].push_back(together.state(index));
+  }
+  for (int threads : {1, 2, 5}) {
+    TruthModel model = two_spacecraft(threads);
+    std::vector<std::vector<CartesianState>> states(2);
+    model.advance_through(times, [&](std::size_t index, std::size_t place) {
+      EXPECT_EQ(states[index].size(), place);
+      states[index].push_back(model.state(index));
+    });
+    EXPECT_EQ(model.time(), times.back());
+    for (std::size_t index : {0u, 1u}) {
+      ASSERT_EQ(states[index].size(), times.size());
+      for (std::size_t k = 0; k < times.size(); ++k) EXPECT_TRUE(same_bits(states[index][k], expected[index][k])) << k;
+    }
+  }
+}
+
+TEST(TruthModel, SpacecraftThatAdvanceOneByOneEndAtTheFirstFailure) {
+  for (int threads : {1, 2}) {
+    TruthModel model = two_spacecraft(threads);
+    model.apply_impulse_rtn(0, Vector3(0.0, -220.0, 0.0));  // re-enters after the other one
+    model.apply_impulse_rtn(1, Vector3(0.0, -300.0, 0.0));
+    std::vector<fsw::GpsTime> times;
+    for (int k = 1; k <= 60; ++k) times.push_back(after(100.0 * k));
+    std::vector<std::size_t> reached(2);
+    const std::string error = error_of(
+        [&] { model.advance_through(times, [&](std::size_t index, std::size_t place) { reached[index] = place; }); });
+    EXPECT_THAT(error, testing::HasSubstr("spacecraft \"target\": re-enters"));
+    EXPECT_GT(reached[0], reached[1]) << threads;
+    EXPECT_EQ(model.time(), times[reached[1]]) << threads;
+  }
+}
+
 TEST(TruthModel, AnotherSpacecraftChangesNothing) {
   TruthModel both = two_spacecraft();
   TruthModel alone(mission_settings());
