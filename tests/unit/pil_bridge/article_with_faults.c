@@ -77,7 +77,7 @@ vbar_status vbar_gnc_step(void* state, int64_t gps_time_ns) {
   if (fault == kForks || fault == kForksSession) {
     const pid_t child = fork();
     if (child == 0 && fault == kForksSession) (void)setsid();
-    for (; child == 0;) (void)sleep(1000);
+    while (child == 0) (void)pause();
     char text[16];
     const int size = snprintf(text, sizeof text, "%d", (int)child);
     the_sink(the_context, (const uint8_t*)text, (size_t)size);
