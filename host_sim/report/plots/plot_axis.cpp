@@ -86,7 +86,7 @@ Range padded(const Range& range, double min_span) {
 
 std::vector<Tick> linear_ticks(const Range& range, int count) {
   const double raw = range.span() / count;
-  if (!(raw >= min_resolved(range))) return {};  // also of ranges that are not finite
+  if (!(raw >= min_resolved(range)) || !std::isfinite(raw)) return {};
   const double power = std::pow(10.0, std::floor(std::log10(raw)));
   const double leading = raw / power;
   const double step = power * (leading < 1.5 ? 1.0 : leading < 3.5 ? 2.0 : leading < 7.5 ? 5.0 : 10.0);
@@ -103,7 +103,7 @@ std::vector<Tick> linear_ticks(const Range& range, int count) {
 }
 
 std::vector<Tick> decade_ticks(const Range& range, int count) {
-  if (!(range.low > 0.0 && std::isfinite(range.high))) return {};
+  if (!(range.low > 0.0 && range.high >= range.low && std::isfinite(range.high))) return {};
   const int first = static_cast<int>(std::ceil(std::log10(range.low) - 1e-9));
   const int last = static_cast<int>(std::floor(std::log10(range.high) + 1e-9));
   const int stride = std::max(1, (last - first + count) / count);
