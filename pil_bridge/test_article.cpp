@@ -204,9 +204,8 @@ using Clock = std::chrono::steady_clock;
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::chrono::milliseconds kAfterSignal{1000};
-constexpr std::uint32_t kAnswerMax =
-    2 *
-    (boards::kOutboxBytes + boards::kOutboxPackets * sizeof(std::uint32_t));  ///< an outbox, and more than its trouble
+/// Bytes of the longest answer: twice those of an outbox with the size of each packet.
+constexpr std::uint32_t kAnswerMax = 2 * (boards::kOutboxBytes + boards::kOutboxPackets * sizeof(std::uint32_t));
 constexpr Clock::time_point kNever = Clock::time_point::max();
 
 template <class Number>

@@ -90,9 +90,8 @@ struct PlanSafety {
 /// Evaluates the drift after each prefix of the plan's burns (the servicer's, in its RTN), from 0 burns at `start` to
 /// all, for the horizon and at least until the next burn. Each must keep the distance, but the drift before the first
 /// burn only until that burn, with a RetreatCriterion until the retreat that follows if it is missed: not flying the
-/// plan would not end it.
-/// Elements and ROE hold at `start`. kInvalidArgument unless the burns are in order of time and none before `start`;
-/// errors of assess_drift. A plan that cannot be assessed is unsafe.
+/// plan would not end it. Elements and ROE hold at `start`. kInvalidArgument unless the burns are in order of time and
+/// none before `start`; errors of assess_drift. A plan that cannot be assessed is unsafe.
 Result<PlanSafety> assess_plan(GpsTime start, const orbit::QnsElements& servicer_mean, const Vector6& mean_roe,
                                const control::Plan& plan, const SafetyCriterion& criterion);
 
