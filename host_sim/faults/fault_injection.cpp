@@ -86,11 +86,19 @@ void FaultySource::upset_device(fsw::GpsTime time) {
 twins::TruthSnapshot FaultySource::seen(const twins::TruthSnapshot& truth) const {
   twins::TruthSnapshot seen = truth;
   for (const mission::Fault* const fault : faults_) {
-    if (fault->kind != mission::FaultKind::kTargetTurned || !fault->is_present(truth.time)) continue;
+    if (!fault->is_present(truth.time)) continue;
     for (twins::SpacecraftTruth& spacecraft : seen.spacecraft) {
-      if (spacecraft.name != fault->observed || !spacecraft.attitude) continue;
-      Eigen::Quaterniond& q_body_eci = spacecraft.attitude->q_body_eci;
-      q_body_eci = Eigen::Quaterniond(Eigen::AngleAxisd(fault->value, fsw::Vector3::UnitX())) * q_body_eci;
+      if (spacecraft.name != fault->observed) continue;
+      if (fault->kind == mission::FaultKind::kTargetTurned && spacecraft.attitude) {
+        Eigen::Quaterniond& q_body_eci = spacecraft.attitude->q_body_eci;
+        q_body_eci = Eigen::Quaterniond(Eigen::AngleAxisd(fault->value, fsw::Vector3::UnitX())) * q_body_eci;
+      }
+      // Behind the camera, in the opposite direction at the same distance.
+      const twins::SpacecraftTruth* const carrier = truth.find(fault->spacecraft);
+      if (fault->kind == mission::FaultKind::kTargetHidden && carrier != nullptr) {
+        fsw::Vector3& position_eci = spacecraft.orbit.position_eci;
+        position_eci = 2.0 * carrier->orbit.position_eci - position_eci;
+      }
     }
   }
   return seen;
@@ -247,23 +255,28 @@ std::optional<vbar::target_apriori> apriori_of(const vbar::telemetry_navigation&
   return apriori;
 }
 
-void ReportedOrbit::take(std::span<const pil::Packet> packets) {
+void ReportedState::take(std::span<const pil::Packet> packets) {
   for (const pil::Packet& packet : packets) {
-    const auto view = fsw::packets::parse_packet(packet);
-    if (!view.ok() || view.value().header.apid != Apid::kTelemetryNavigation) continue;
-    const auto navigation = fsw::packets::decode<vbar::telemetry_navigation>(view.value());
-    if (navigation.ok() && navigation.value().valid != 0) last_ = {view.value().header.time, navigation.value()};
+    if (const auto control = message_in<vbar::telemetry_control>(packet)) {
+      is_retreating_ = control->second.mode == vbar::mode_command::kModeRetreat;
+    } else if (const auto navigation = message_in<vbar::telemetry_navigation>(packet);
+               navigation && navigation->second.valid != 0) {
+      last_ = {navigation->first.header.time, navigation->second};
+    }
   }
 }
 
-std::vector<pil::Packet> ReportedOrbit::applied_to(std::vector<pil::Packet> telecommands, fsw::GpsTime now) const {
-  if (!last_ || now - last_->time > kOldestReport) return telecommands;
-  const auto apriori = apriori_of(last_->navigation);
-  if (!apriori) return telecommands;
+std::vector<pil::Packet> ReportedState::applied_to(std::vector<pil::Packet> telecommands, fsw::GpsTime now) const {
+  const bool is_recent = last_ && now - last_->time <= kOldestReport;
+  const auto apriori = is_recent ? apriori_of(last_->navigation) : std::nullopt;
   for (pil::Packet& packet : telecommands) {
     const auto view = fsw::packets::parse_packet(packet);
-    if (!view.ok() || view.value().header.apid != Apid::kTargetApriori) continue;
+    if (!view.ok()) continue;
     fsw::packets::PacketHeader header = view.value().header;
+    if (header.apid == Apid::kModeCommand && is_retreating_) {
+      packet = packet_of(header, vbar::mode_command{.mode = vbar::mode_command::kModeRetreat});
+    }
+    if (header.apid != Apid::kTargetApriori || !apriori) continue;
     header.time = last_->time;
     pil::Packet reported(fsw::packets::kMaxPacketBytes);
     const auto size = fsw::packets::encode(header, *apriori, reported);

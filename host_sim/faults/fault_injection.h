@@ -105,20 +105,20 @@ class UncommandedImpulses {
   std::int32_t next_id_ = kFirstUncommanded;
 };
 
-// Knowledge of the ground about the target's orbit when a flight computer has lost its state: the relative orbit that
-// its telemetry reported last. It takes the place of the a-priori orbit among the telecommands of the start, which may
-// be older than a day.
+// Knowledge of the ground when a flight computer has lost its state: what its telemetry reported last. The relative
+// orbit takes the place of the a-priori orbit among the telecommands of the start, which may be older than a day, and a
+// retreat that was in force is commanded in place of the mode of the start.
 
 /// Oldest relative orbit that is sent, as mean ROE are valid for ten minutes in the flight software.
 inline constexpr fsw::Duration kOldestReport = fsw::duration_of_seconds(540);
 
-class ReportedOrbit {
+class ReportedState {
  public:
-  /// Packets from the flight software; the last valid estimate of a source that measures is kept.
+  /// Packets from the flight software; the last mode and the last valid estimate are kept.
   void take(std::span<const pil::Packet> packets);
 
-  /// The telecommands with a target_apriori that states the relative orbit reported last. Unchanged without
-  /// target_apriori among them, and if no report is younger than kOldestReport at `now`.
+  /// The telecommands, with the mode of a retreat that was reported last, and with a target_apriori that states the
+  /// relative orbit reported last if that is not older than kOldestReport at `now`. None is added.
   [[nodiscard]] std::vector<pil::Packet> applied_to(std::vector<pil::Packet> telecommands, fsw::GpsTime now) const;
 
  private:
@@ -127,6 +127,7 @@ class ReportedOrbit {
     vbar::telemetry_navigation navigation;
   };
   std::optional<Report> last_;
+  bool is_retreating_ = false;
 };
 
 /// Mean ROE times a with 1 sigma, of a reported estimate; nothing if the servicer's state is not an orbit. Telemetry
@@ -160,7 +161,7 @@ class FaultyComputer final : public pil::FlightComputer {
   std::shared_ptr<const FaultSchedule> schedule_;
   Start start_;
   std::vector<pil::Packet> telecommands_;
-  ReportedOrbit reported_;
+  ReportedState reported_;
   std::unique_ptr<pil::FlightComputer> restarted_;
   bool must_restart_ = false;
   std::vector<std::uint8_t> snapshot_;  ///< snapshot of the step before a reboot that keeps the state

@@ -101,6 +101,7 @@ void FaultLog::on_step(std::uint32_t /*step*/, GpsTime time, std::span<const pil
       case FaultKind::kThrustUncommanded:
         break;  // on_execution
       case FaultKind::kTargetTurned:
+      case FaultKind::kTargetHidden:
         break;  // finish
       case FaultKind::kComputerSilent:
       case FaultKind::kComputerReboot:
@@ -289,9 +290,29 @@ void FaultLog::look_at_poses(State& state) {
   }
 }
 
+/// Images of an illuminated target in which no object is where the target is.
+void FaultLog::look_for_target(State& state) {
+  int without = 0;
+  const auto look = [&](GpsTime time, bool is_seen) {
+    if (state.fault.is_present(time) && !is_seen) {
+      observe_effect(state, time, fmt::format("{} images without the illuminated target", ++without));
+    } else if (state.fault.has_begun(time) && !state.fault.is_present(time) && is_seen) {
+      observe_end(state, time);
+    }
+  };
+  for (const sensors::ImageRow& image : record_.tables.rows<sensors::ImageRow>())
+    if (image.sunlit.value_or(0.0) > 0.5)
+      look(mission_.epoch + fsw::nearest_duration(image.time_s), image.true_object >= 0);
+  for (const sensors::PoseRow& pose : record_.tables.rows<sensors::PoseRow>())
+    if (pose.sunlit.value_or(0.0) > 0.5)
+      look(mission_.epoch + fsw::nearest_duration(pose.time_s), pose.status == telemetry_pose::kStatusPose);
+}
+
 void FaultLog::finish() {
-  for (State& state : states_)
+  for (State& state : states_) {
     if (state.fault.kind == FaultKind::kTargetTurned) look_at_poses(state);
+    if (state.fault.kind == FaultKind::kTargetHidden) look_for_target(state);
+  }
   if (states_.empty()) return;
   auto& figures = record_.summary.sensor_figures["faults"];
   figures["injected"] = static_cast<double>(states_.size());

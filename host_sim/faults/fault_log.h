@@ -52,6 +52,7 @@ class FaultLog final : public app::RunObserver {
   void look_at_packets(fsw::GpsTime time, std::span<const pil::Packet> inputs);
   void look_at_silence(State& state, fsw::GpsTime time);
   void look_at_poses(State& state);
+  void look_for_target(State& state);
   void look_at_images(State& state, fsw::GpsTime time);
   void look_at_attitudes(State& state, fsw::GpsTime time, std::span<const pil::Packet> inputs);
   void look_at_outputs(fsw::GpsTime time, std::span<const pil::Packet> outputs);

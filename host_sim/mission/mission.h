@@ -147,6 +147,7 @@ enum class FaultKind {
   kFrozen,             ///< a camera gives its last image again
   kReceiverSilent,     ///< a receiver gives no bytes; attitudes of the same sensor continue
   kTargetTurned,       ///< a camera sees the target rotated by `value`, rad, about its body's x axis
+  kTargetHidden,       ///< a camera does not see the target
   kAttitudeError,      ///< attitudes of a sensor are rotated by `value`, rad
   kThrustScale,        ///< burns are executed at `value` of their size; 0: not at all
   kThrustUncommanded,  ///< an acceleration of `value` m/s^2 along `direction_rtn`
@@ -175,7 +176,7 @@ struct Fault {
   FaultKind kind = FaultKind::kSilent;
   std::string unit;        ///< the sensor concerned; empty for other kinds
   std::string spacecraft;  ///< that carries it
-  std::string observed;    ///< kTargetTurned: the spacecraft in its images
+  std::string observed;    ///< kTargetTurned, kTargetHidden: the spacecraft in its images
   std::string satellite;   ///< kCycleSlip: "G05", "highest" or "all"
   std::string start;       ///< as in the file: "waypoint:9"; empty: a time
   /// Event that begins the fault; empty if `begin` is known: before the run, or since the event has happened.
@@ -372,10 +373,11 @@ inline constexpr Names<Mode, 5> kModes{{{"idle", Mode::kIdle},
                                         {"station_keeping", Mode::kStationKeeping},
                                         {"hold", Mode::kHold},
                                         {"retreat", Mode::kRetreat}}};
-inline constexpr Names<FaultKind, 12> kFaultKinds{{{"silent", FaultKind::kSilent},
+inline constexpr Names<FaultKind, 13> kFaultKinds{{{"silent", FaultKind::kSilent},
                                                    {"frozen", FaultKind::kFrozen},
                                                    {"receiver_silent", FaultKind::kReceiverSilent},
                                                    {"target_turned", FaultKind::kTargetTurned},
+                                                   {"target_hidden", FaultKind::kTargetHidden},
                                                    {"attitude_error", FaultKind::kAttitudeError},
                                                    {"thrust_scale", FaultKind::kThrustScale},
                                                    {"thrust_uncommanded", FaultKind::kThrustUncommanded},

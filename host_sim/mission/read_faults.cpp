@@ -161,6 +161,9 @@ Fault read_fault(const TableReader& section, const Mission& mission) {
       fault.observed = read_unit(section, mission, fault, {"camera"}).settings->observed;
       fault.value = kDegree * section.number("value_deg", above_to(0.0, 180.0));
       break;
+    case FaultKind::kTargetHidden:
+      fault.observed = read_unit(section, mission, fault, {"camera"}).settings->observed;
+      break;
     case FaultKind::kAttitudeError:
       read_unit(section, mission, fault, {"gnss"});
       fault.value = kDegree * section.number("value_deg", above_to(0.0, 180.0));

@@ -130,7 +130,7 @@ telemetry_navigation navigation() {
   return reported;
 }
 
-class ReportedOrbitTest : public testing::Test {
+class ReportedStateTest : public testing::Test {
  protected:
   void report(double s, const telemetry_navigation& navigation) {
     const std::vector<pil::Packet> packets{*encoder_.encode(time_at(s), navigation)};
@@ -150,10 +150,10 @@ class ReportedOrbitTest : public testing::Test {
   }
 
   twins::PacketEncoder encoder_{1, 0};
-  ReportedOrbit reported_;
+  ReportedState reported_;
 };
 
-TEST_F(ReportedOrbitTest, IsThatOfTheLastTelemetry) {
+TEST_F(ReportedStateTest, IsThatOfTheLastTelemetry) {
   report(0.0, telemetry_navigation{});
   telemetry_navigation first = navigation();
   first.a_roe_mean_m[0] = 5.0;
@@ -165,28 +165,42 @@ TEST_F(ReportedOrbitTest, IsThatOfTheLastTelemetry) {
   for (int k = 0; k < 6; ++k) EXPECT_EQ(apriori.mean_a_roe_m[k], 10.0 * (k + 1)) << k;
 }
 
-TEST_F(ReportedOrbitTest, AnInvalidEstimateIsNotSent) {
+TEST_F(ReportedStateTest, AnInvalidEstimateIsNotSent) {
   telemetry_navigation invalid = navigation();
   invalid.valid = 0;
   report(20.0, invalid);
   EXPECT_EQ(sent(80.0).second.mean_a_roe_m[0], -1.0);
 }
 
-TEST_F(ReportedOrbitTest, AnOldReportIsNotSent) {
+TEST_F(ReportedStateTest, AnOldReportIsNotSent) {
   report(0.0, navigation());
   EXPECT_EQ(sent(540.0).second.mean_a_roe_m[0], 10.0);
   EXPECT_EQ(sent(541.0).second.mean_a_roe_m[0], -1.0);
 }
 
-TEST_F(ReportedOrbitTest, WhatIsNoOrbitIsNotSent) {
+TEST_F(ReportedStateTest, WhatIsNoOrbitIsNotSent) {
   telemetry_navigation still = navigation();
   for (double& v : still.servicer_velocity_eci) v = 0.0;
   report(20.0, still);
   EXPECT_EQ(sent(80.0).second.mean_a_roe_m[0], -1.0);
 }
 
+TEST_F(ReportedStateTest, ARetreatInForceIsCommandedAgain) {
+  const auto mode_after = [&](std::int8_t reported_mode) {
+    telemetry_control control{};
+    control.mode = reported_mode;
+    reported_.take(std::vector<pil::Packet>{*encoder_.encode(time_at(20.0), control)});
+    const auto applied = reported_.applied_to(
+        {*encoder_.encode(time_at(-1000.0), mode_command{.mode = mode_command::kModeApproach})}, time_at(1000.0));
+    return fsw::packets::decode<mode_command>(fsw::packets::parse_packet(applied.at(0)).value()).value().mode;
+  };
+  EXPECT_EQ(mode_after(mode_command::kModeHold), mode_command::kModeApproach);
+  EXPECT_EQ(mode_after(mode_command::kModeRetreat), mode_command::kModeRetreat);
+  EXPECT_EQ(mode_after(mode_command::kModeApproach), mode_command::kModeApproach);
+}
+
 // At the node of the orbit, where sines and cosines of u are 0 and 1, by hand.
-TEST_F(ReportedOrbitTest, SigmasBoundThoseOfTheElements) {
+TEST_F(ReportedStateTest, SigmasBoundThoseOfTheElements) {
   telemetry_navigation reported = navigation();
   const double n = fsw::orbit::mean_motion(kServicer.a);
   const double sigma[6] = {0.1, 0.5, 0.2, 0.02 * n, 0.03 * n, 0.04 * n};

@@ -118,6 +118,7 @@ TEST(FaultKeys, WhatTheMissionCannotApplyIsRefused) {
       {"kind = \"silent\"\nunit = \"radar\"\nat_h = 0.5\n", "a sensor of servicer that can fail so: navigation"},
       {"kind = \"frozen\"\nunit = \"navigation\"\nat_h = 0.5\n", "can fail so: it has none"},
       {"kind = \"receiver_silent\"\nunit = \"navigation\"\nat_h = 0.5\n", "can fail so: it has none"},
+      {"kind = \"target_hidden\"\nunit = \"navigation\"\nat_h = 0.5\n", "can fail so: it has none"},
       {"kind = \"target_turned\"\nunit = \"navigation\"\nat_h = 0.5\nvalue_deg = 90.0\n", "can fail so: it has none"},
       {"kind = \"silent\"\nunit = \"gnss\"\nspacecraft = \"moon\"\nat_h = 0.5\n",
        "accepted: servicer, or the spacecraft that it observes"},
