@@ -40,12 +40,15 @@ struct TrackerSettings {
   double history_sigma = 1.0;      ///< magnitudes, 1-sigma variation of the target from one hour to another
   double beside_loss = 10.0;       ///< log-likelihood of being the target, of a track that was seen beside it
   int beside_images = 30;          ///< number of images that establish that
+  double least_identity = -5.0;    ///< log-likelihood with which a track that is searched may be the target: satellites
+                                   ///< that were never seen before are as rare as this in the field
   double sharp_object_loss = 2.3;  ///< log-likelihood: the target's light falls on more than one pixel
   int confirm_hits = 5;            ///< number M of detections that establishes a track...
   int confirm_images = 7;          ///< ...among N images
   int gap_images = 5;              ///< a gap: number of images without detection
   int hits_after_gap = 3;          ///< detections needed again after a gap
   int give_up_images = 15;         ///< images without detection, though expected, until a track is given up
+  int remember_images = 500;       ///< the same of another satellite's track while the target is searched
 };
 
 struct TrackerInput {
@@ -99,6 +102,10 @@ class TargetTracker {
   void grow();
   void share_objects();
   void compare_with_prediction();
+  [[nodiscard]] bool is_another(const Hypothesis& hypothesis) const {
+    return hypothesis.images_beside >= settings_.beside_images;
+  }
+  [[nodiscard]] int patience_with(const Hypothesis& hypothesis) const;
   [[nodiscard]] double history_loss(const Hypothesis& hypothesis) const;
   void note_history(const Hypothesis& target);
   void prune();

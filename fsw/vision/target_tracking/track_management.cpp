@@ -74,8 +74,10 @@ void TargetTracker::compare_with_prediction() {
     const SlopeDistance as_other =
         slope_distance(Vector5::Zero(), state.covariance + unknown * unknown * unit, kRegular);
     hypothesis.distance = as_target.square;
-    hypothesis.identity =
-        0.5 * (as_other.log_determinant - as_target.log_determinant - as_target.square) - history_loss(hypothesis);
+    double evidence = 0.5 * (as_other.log_determinant - as_target.log_determinant - as_target.square);
+    // That a satellite seen beside the target still moves as it did is no evidence for the target.
+    if (work_.is_search && is_another(hypothesis)) evidence = std::min(evidence, 0.0);
+    hypothesis.identity = evidence - history_loss(hypothesis);
   }
 }
 
@@ -83,7 +85,7 @@ void TargetTracker::compare_with_prediction() {
 // phase angle, so that the change of brightness with it cancels in the comparison of two.
 double TargetTracker::history_loss(const Hypothesis& hypothesis) const {
   if (!work_.is_search) return 0.0;
-  double loss = hypothesis.images_beside >= settings_.beside_images ? settings_.beside_loss : 0.0;
+  double loss = is_another(hypothesis) ? settings_.beside_loss : 0.0;
   const double distance = math::abs(work_.prediction.along_track_m);
   if (!target_log_power_ || !(distance > 0.0)) return loss;
   const double log_power = hypothesis.log_flux + 2.0 * math::log(distance);
@@ -137,7 +139,9 @@ void TargetTracker::choose_target() {
   if (target == nullptr) {
     target_track_ = 0;
     deposing_images_ = 0;
-    const bool is_possible = best->distance < settings_.identity_gate;
+    // The only track in view may be another satellite's while the target is out of sight.
+    const bool is_possible =
+        best->distance < settings_.identity_gate && (!work_.is_search || best->identity > settings_.least_identity);
     ambiguous_ = is_possible && score_margin_ < settings_.identity_margin;
     if (best->established && is_possible && !ambiguous_ && images_watched_ >= settings_.confirm_images) {
       target_track_ = best->track;
@@ -270,11 +274,18 @@ const Hypothesis* TargetTracker::best_of(std::uint32_t track) const {
   return best;
 }
 
+/// Images without an object after which a hypothesis is deleted. The camera of a search looks elsewhere at times: a
+/// satellite known as another one must not return as a new track.
+int TargetTracker::patience_with(const Hypothesis& hypothesis) const {
+  if (!hypothesis.established) return kPatience;
+  return work_.is_search && is_another(hypothesis) ? settings_.remember_images : settings_.give_up_images;
+}
+
 void TargetTracker::prune() {
   work_.erased.fill(false);
   for (std::size_t k = 0; k < count_; ++k) {
     const Hypothesis& hypothesis = hypotheses_[k];
-    const int patience = hypothesis.established ? settings_.give_up_images : kPatience;
+    const int patience = patience_with(hypothesis);
     const bool hopeless = !hypothesis.established && hypothesis.score < kDropScore;
     const Hypothesis* best = best_of(hypothesis.track);
     // Hypotheses that separated from the track's best one more than kScan images ago.
