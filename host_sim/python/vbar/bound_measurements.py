@@ -1,0 +1,120 @@
+"""Measurements of the bound: partials by the true geometry, noise as measured against the truth of the runs."""
+import numpy
+
+from vbar.information_filter import GaussMarkov
+from vbar.relative_dynamics import rtn_axes
+
+ARCSEC = numpy.pi / 180 / 3600
+# 1 sigma and correlation time of the displacement of the light by the Earth, and correlation times of the displacement towards the Sun
+# and of the bias of bearings, as fsw/measurements/state_blocks/bearing_blocks.h states them.
+EARTHLIGHT, SUN_TIME_S, BIAS_TIME_S = (0.05, 1e5), 20000.0, 43200.0
+
+
+def variances(squares, distances):
+    """Of errors (their squares, rad^2) whose noise is an angle and a length at the target: both variances, not negative."""
+    regressors = numpy.stack([numpy.ones_like(distances), distances**-2.0], 1)
+    angle, length = numpy.median(squares), 0.0
+    for _ in range(50):
+        weight = 1 / (angle + length / distances**2)
+        scaled = regressors * weight[:, None]
+        solution = numpy.linalg.lstsq(scaled, squares * weight, rcond=None)[0]
+        if (solution < 0).any():
+            keep = int(numpy.argmax(solution))
+            solution = numpy.zeros(2)
+            solution[keep] = (scaled[:, keep] @ (squares * weight)) / (scaled[:, keep] @ scaled[:, keep])
+        angle, length = solution
+    return angle, length
+
+
+def correlation(series, period, lags=30):
+    """Share and time (s) of the first-order process in unit-variance series of (times, values), beside white noise."""
+    products = numpy.zeros(lags)
+    for lag in range(1, lags + 1):
+        pairs = [(values[late] * values[early]) for times, values in series
+                 for early, late in [neighbours(times, lag * period)] if len(early)]
+        products[lag - 1] = numpy.mean(numpy.concatenate(pairs)) if pairs else 0.0
+    best = (numpy.inf, 0.0, period)
+    for time in period * numpy.geomspace(1, 300, 60):
+        shape = numpy.exp(-period * numpy.arange(1, lags + 1) / time)
+        share = numpy.clip(shape @ products / (shape @ shape), 0.0, 1.0)
+        misfit = ((products - share * shape)**2).sum()
+        best = min(best, (misfit, share, time))
+    return best[1:]
+
+
+def neighbours(times, lag):
+    """Indices of pairs that are `lag` apart."""
+    late = numpy.searchsorted(times, times + lag - 1e-3)
+    early = numpy.flatnonzero(late < len(times))
+    late = late[early]
+    same = numpy.abs(times[late] - times[early] - lag) < 1e-2
+    return early[same], late[same]
+
+
+class Bearings:
+    """Bearings of a camera. Unknowns: bias (2), displacement of the light towards the Sun and the Earth, wander of the centroid (2)."""
+    size = 6
+
+    def __init__(self, flight):
+        images = flight.run.images
+        images = images[images.fate.isin(["filter", "batch"]) & images.bearing_error_x_arcsec.notna()]
+        self.time, self.received = images.time_s.to_numpy(float), images.step_time_s.to_numpy(float)
+        self.error = images[["bearing_error_x_arcsec", "bearing_error_y_arcsec"]].to_numpy(float) * ARCSEC
+        servicer, target = flight.states(self.time)
+        sight = target[:, :3] - servicer[:, :3]
+        self.range = numpy.linalg.norm(sight, axis=1)
+        line = sight / self.range[:, None]
+        right = numpy.cross(-rtn_axes(servicer)[:, 0], line)
+        right /= numpy.linalg.norm(right, axis=1, keepdims=True)
+        self.axes = numpy.stack([right, numpy.cross(line, right)], 1)  # of the image: x to the right, y down
+        sun = flight.sun(self.time)
+        down = -target[:, :3]
+        self.displacements = numpy.stack([self.axes @ (v / numpy.linalg.norm(v, axis=1, keepdims=True))[:, :, None]
+                                          for v in (sun, down)], -1)[:, :, 0]
+        angles = flight.navigation.get("angles_only", {})
+        self.bias_sigma = float(angles.get("bearing_bias_arcsec", 3.0)) * ARCSEC
+        self.sun_sigma = float(angles.get("brightness_offset_m", 0.15))
+
+    @classmethod
+    def of(cls, flights):
+        """The bearings of each flight, with the noise of all of them together."""
+        all_of = [cls(flight) for flight in flights]
+        residuals = [bearings.residuals() for bearings in all_of]
+        squares = numpy.concatenate([(residual**2).ravel() for residual in residuals])
+        distances = numpy.concatenate([numpy.repeat(bearings.range, 2) for bearings in all_of])
+        kept = numpy.ones_like(squares, bool)
+        for _ in range(3):
+            angle, length = variances(squares[kept], distances[kept])
+            kept = squares < 25 * (angle + length / distances**2)
+        period = numpy.median(numpy.diff(all_of[0].time))
+        series = []
+        for bearings, residual in zip(all_of, residuals):
+            normalised = residual / numpy.sqrt(angle + length / bearings.range**2)[:, None]
+            near = bearings.range**2 < length / angle if angle > 0 else bearings.range > 0
+            series += [(bearings.time[use], normalised[use, axis]) for axis in range(2) for use in [near & (abs(normalised[:, axis]) < 5)]]
+        share, time = correlation(series, period)
+        for bearings in all_of:
+            bearings.angle, bearings.length, bearings.share, bearings.wander_time = angle, length, share, time
+        all_of[0].noise_text = (f"noise of a bearing, each axis: {angle**0.5 / ARCSEC:.3f} arcsec and {length**0.5:.4f} m at the target, of which "
+                                f"{100 * share:.0f} % of the variance is correlated over {time:.0f} s; {len(squares) // 2} bearings, {(~kept).sum()} components beyond 5 sigma")
+        return all_of
+
+    def residuals(self):
+        """Errors (rad) without the displacements towards Sun and Earth that fit the whole run best."""
+        weight = numpy.repeat(1 / numpy.hypot(ARCSEC, 0.1 / self.range), 2)
+        columns = (self.displacements / self.range[:, None, None]).reshape(-1, 2)
+        fit = numpy.linalg.lstsq(columns * weight[:, None], self.error.ravel() * weight, rcond=None)[0]
+        self.fit = fit
+        return self.error - (columns @ fit).reshape(-1, 2)
+
+    def unknowns(self, first):
+        return [GaussMarkov(first, 2, self.bias_sigma, BIAS_TIME_S), GaussMarkov(first + 2, 1, self.sun_sigma, SUN_TIME_S),
+                GaussMarkov(first + 3, 1, *EARTHLIGHT), GaussMarkov(first + 4, 2, max((self.share * self.length)**0.5, 1e-6), self.wander_time)]
+
+    def rows(self, k, size, first):
+        H = numpy.zeros((2, size))
+        H[:, :3] = self.axes[k] / self.range[k]
+        H[:, first:first + 2] = numpy.eye(2)
+        H[:, first + 2:first + 4] = self.displacements[k] / self.range[k]
+        H[:, first + 4:first + 6] = numpy.eye(2) / self.range[k]
+        return H, (self.angle + (1 - self.share) * self.length / self.range[k]**2) * numpy.eye(2)
