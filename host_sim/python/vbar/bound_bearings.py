@@ -1,7 +1,8 @@
-"""Measurements of the bound: partials by the true geometry, noise as measured against the truth of the runs."""
+"""Bearings of a camera as measurements of the bound: partials by the true geometry, noise as measured against the truth of the runs."""
 import numpy
 
 from vbar.information_filter import GaussMarkov
+from vbar.measured_noise import correlation
 from vbar.relative_dynamics import rtn_axes
 
 ARCSEC = numpy.pi / 180 / 3600
@@ -24,31 +25,6 @@ def variances(squares, distances):
             solution[keep] = (scaled[:, keep] @ (squares * weight)) / (scaled[:, keep] @ scaled[:, keep])
         angle, length = solution
     return angle, length
-
-
-def correlation(series, period, lags=30):
-    """Share and time (s) of the first-order process in unit-variance series of (times, values), beside white noise."""
-    products = numpy.zeros(lags)
-    for lag in range(1, lags + 1):
-        pairs = [(values[late] * values[early]) for times, values in series
-                 for early, late in [neighbours(times, lag * period)] if len(early)]
-        products[lag - 1] = numpy.mean(numpy.concatenate(pairs)) if pairs else 0.0
-    best = (numpy.inf, 0.0, period)
-    for time in period * numpy.geomspace(1, 300, 60):
-        shape = numpy.exp(-period * numpy.arange(1, lags + 1) / time)
-        share = numpy.clip(shape @ products / (shape @ shape), 0.0, 1.0)
-        misfit = ((products - share * shape)**2).sum()
-        best = min(best, (misfit, share, time))
-    return best[1:]
-
-
-def neighbours(times, lag):
-    """Indices of pairs that are `lag` apart."""
-    late = numpy.searchsorted(times, times + lag - 1e-3)
-    early = numpy.flatnonzero(late < len(times))
-    late = late[early]
-    same = numpy.abs(times[late] - times[early] - lag) < 1e-2
-    return early[same], late[same]
 
 
 class Bearings:
@@ -95,9 +71,11 @@ class Bearings:
         share, time = correlation(series, period)
         for bearings in all_of:
             bearings.angle, bearings.length, bearings.share, bearings.wander_time = angle, length, share, time
-        all_of[0].noise_text = (f"noise of a bearing, each axis: {angle**0.5 / ARCSEC:.3f} arcsec and {length**0.5:.4f} m at the target, of which "
-                                f"{100 * share:.0f} % of the variance is correlated over {time:.0f} s; {len(squares) // 2} bearings, {(~kept).sum()} components beyond 5 sigma")
         return all_of
+
+    def noise_text(self):
+        return (f"noise of a bearing, each axis: {self.angle**0.5 / ARCSEC:.2f} arcsec and {100 * self.length**0.5:.1f} cm at the target, "
+                f"{100 * self.share:.0f} % of the latter's variance correlated over {self.wander_time:.0f} s")
 
     def residuals(self):
         """Errors (rad) without the displacements towards Sun and Earth that fit the whole run best."""
@@ -108,8 +86,13 @@ class Bearings:
         return self.error - (columns @ fit).reshape(-1, 2)
 
     def unknowns(self, first):
-        return [GaussMarkov(first, 2, self.bias_sigma, BIAS_TIME_S), GaussMarkov(first + 2, 1, self.sun_sigma, SUN_TIME_S),
-                GaussMarkov(first + 3, 1, *EARTHLIGHT), GaussMarkov(first + 4, 2, max((self.share * self.length)**0.5, 1e-6), self.wander_time)]
+        return {"bearing bias": GaussMarkov(first, 2, self.bias_sigma, BIAS_TIME_S),
+                "brightness offset": GaussMarkov(first + 2, 1, self.sun_sigma, SUN_TIME_S),
+                "earthlight": GaussMarkov(first + 3, 1, *EARTHLIGHT),
+                "centroid wander": GaussMarkov(first + 4, 2, max((self.share * self.length)**0.5, 1e-6), self.wander_time)}
+
+    def empirical_acceleration(self, first):
+        return None
 
     def rows(self, k, size, first):
         H = numpy.zeros((2, size))

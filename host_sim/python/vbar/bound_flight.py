@@ -1,0 +1,67 @@
+"""A recorded run for the bound: its true orbits, its burns, and what its mission states to navigation."""
+import tomllib
+
+import numpy
+
+from vbar.relative_dynamics import propagate, relative_from_roe, sun_position
+from vbar.run_folder import Run
+
+# 1 sigma, times the semi-major axis, of da, dlambda, de, di, where a mission states no a-priori orbit.
+WITHOUT_APRIORI_M = (1e3, 1e5, 1e4, 1e4)
+J2000 = numpy.datetime64("2000-01-01T12:00:00")
+
+
+def columns(table, *names):
+    return table[list(names)].to_numpy(float)
+
+
+def vector(table, name, unit, axes="xyz"):
+    return columns(table, *(f"{name}_{axis}_{unit}" for axis in axes))
+
+
+class Flight:
+    """What a run folder records of the truth, and what its mission states to navigation."""
+
+    def __init__(self, folder):
+        self.run = Run(folder)
+        self.mission = tomllib.loads((self.run.folder / "mission.toml").read_text())
+        truth = self.run.truth
+        self.time = truth.time_s.to_numpy(float)
+        self.servicer, self.target = (
+            numpy.hstack([vector(truth, f"{craft}_position_eci", "m"), vector(truth, f"{craft}_velocity_eci", "mps")])
+            for craft in ("servicer", "target"))
+        self.epoch = numpy.datetime64(self.mission["mission"]["epoch_utc"].rstrip("Z"))
+        self.navigation = self.mission.get("navigation", {})
+        self.servicer_keys = next(craft for craft in self.mission["spacecraft"] if "flight_computer" in craft)
+
+    def stated(self, key, default):
+        return float(self.navigation.get(key, default))
+
+    def states(self, times):
+        """Of servicer and target: the record before each time, propagated with J2."""
+        before = numpy.clip(numpy.searchsorted(self.time, times + 1e-6) - 1, 0, None)
+        return tuple(propagate(states[before], times - self.time[before]) for states in (self.servicer, self.target))
+
+    def julian_date(self, times):
+        return 2451545.0 + ((self.epoch - J2000) / numpy.timedelta64(1, "s") + times) / 86400
+
+    def sun(self, times):
+        return sun_position(self.julian_date(times))
+
+    def burns(self):
+        """Times, and 1 sigma per axis that the mission states of each (m/s)."""
+        if "maneuvers" not in self.run.tables:
+            return numpy.zeros(0), numpy.zeros(0)
+        table = self.run.maneuvers
+        table = table[table.accepted == 1]
+        size = numpy.linalg.norm(vector(table, "executed_dv_rtn", "mps", "rtn"), axis=1)
+        share = self.stated("maneuver_sigma_percent", 0.2) / 100
+        return table.execution_time_s.to_numpy(float), numpy.hypot(share * size, 1e-3 * self.stated("maneuver_sigma_mmps", 0.002))
+
+    def apriori(self):
+        """Covariance (6, 6) of the relative inertial state at the first record."""
+        stated = self.navigation.get("apriori", {})
+        da, dlambda, de, di = (float(stated.get(f"sigma_a_{name}_m", default))
+                               for name, default in zip(("da", "dlambda", "de", "di"), WITHOUT_APRIORI_M))
+        partials = relative_from_roe(self.servicer[0])
+        return partials @ numpy.diag(numpy.square([da, dlambda, de, de, di, di])) @ partials.T
