@@ -7,6 +7,7 @@ import numpy
 from vbar.bound_bearings import Bearings
 from vbar.bound_carrier_phases import CarrierPhases
 from vbar.bound_flight import Flight, columns
+from vbar.bound_keypoints import Keypoints
 from vbar.information_filter import GaussMarkov, InformationFilter
 from vbar.relative_dynamics import is_sunlit, rtn_axes, transitions
 
@@ -71,7 +72,7 @@ def bound_of(flight, measurements, known=()):
     for process in unknowns.values():
         information.know(process.places[0], process.sigmas())
     result = numpy.full(len(flight.time), numpy.inf)
-    for k, (_, _, kind, index) in enumerate(events):
+    for k, (time, _, kind, index) in enumerate(events):
         if kind == "measurement":
             information.measure(*measurements.rows(index, size, first))
         elif kind == BURNS:
@@ -84,7 +85,7 @@ def bound_of(flight, measurements, known=()):
             transition, noise = numpy.eye(size), numpy.zeros((size, size))
             dynamics.fill(k, transition, noise)
             for process in unknowns.values():
-                process.fill(dynamics.steps[k], transition, noise)
+                process.fill(time, dynamics.steps[k], transition, noise)
             information.propagate(transition, root(noise))
     return result
 
@@ -102,7 +103,7 @@ def measurements_of(flights):
     tables = flights[0].run.tables
     if "gnss" in tables and (flights[0].run.gnss.fixed > 0).any():
         return CarrierPhases.of(flights)
-    return Bearings.of(flights)
+    return (Keypoints if "keypoints" in tables else Bearings).of(flights)
 
 
 def main(arguments=None):

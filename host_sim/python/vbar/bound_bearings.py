@@ -28,8 +28,9 @@ def variances(squares, distances):
 
 
 class Bearings:
-    """Bearings of a camera. Unknowns: bias (2), displacement of the light towards the Sun and the Earth, wander of the centroid (2)."""
-    size = 6
+    """Bearings of a camera. Unknowns: bias (2), displacement of the light towards the Sun and the Earth, two processes of
+    the centroid (2 each)."""
+    size = 8
 
     def __init__(self, flight):
         images = flight.run.images
@@ -68,14 +69,14 @@ class Bearings:
             normalised = residual / numpy.sqrt(angle + length / bearings.range**2)[:, None]
             near = bearings.range**2 < length / angle if angle > 0 else bearings.range > 0
             series += [(bearings.time[use], normalised[use, axis]) for axis in range(2) for use in [near & (abs(normalised[:, axis]) < 5)]]
-        share, time = correlation(series, period)
+        shares, times = correlation(series, period)
         for bearings in all_of:
-            bearings.angle, bearings.length, bearings.share, bearings.wander_time = angle, length, share, time
+            bearings.angle, bearings.length, bearings.shares, bearings.times = angle, length, shares, times
         return all_of
 
     def noise_text(self):
         return (f"noise of a bearing, each axis: {self.angle**0.5 / ARCSEC:.2f} arcsec and {100 * self.length**0.5:.1f} cm at the target, "
-                f"{100 * self.share:.0f} % of the latter's variance correlated over {self.wander_time:.0f} s")
+                f"{100 * self.shares[0]:.0f} % of the latter's variance correlated over {self.times[0]:.0f} s, {100 * self.shares[1]:.0f} % over {self.times[1]:.0f} s")
 
     def residuals(self):
         """Errors (rad) without the displacements towards Sun and Earth that fit the whole run best."""
@@ -89,7 +90,8 @@ class Bearings:
         return {"bearing bias": GaussMarkov(first, 2, self.bias_sigma, BIAS_TIME_S),
                 "brightness offset": GaussMarkov(first + 2, 1, self.sun_sigma, SUN_TIME_S),
                 "earthlight": GaussMarkov(first + 3, 1, *EARTHLIGHT),
-                "centroid wander": GaussMarkov(first + 4, 2, max((self.share * self.length)**0.5, 1e-6), self.wander_time)}
+                "centroid": GaussMarkov(first + 4, 2, max((self.shares[0] * self.length)**0.5, 1e-4), self.times[0]),
+                "centroid wander": GaussMarkov(first + 6, 2, max((self.shares[1] * self.length)**0.5, 1e-4), self.times[1])}
 
     def empirical_acceleration(self, first):
         return None
@@ -99,5 +101,5 @@ class Bearings:
         H[:, :3] = self.axes[k] / self.range[k]
         H[:, first:first + 2] = numpy.eye(2)
         H[:, first + 2:first + 4] = self.displacements[k] / self.range[k]
-        H[:, first + 4:first + 6] = numpy.eye(2) / self.range[k]
-        return H, (self.angle + (1 - self.share) * self.length / self.range[k]**2) * numpy.eye(2)
+        H[:, first + 4:first + 6] = H[:, first + 6:first + 8] = numpy.eye(2) / self.range[k]
+        return H, (self.angle + (1 - sum(self.shares)) * self.length / self.range[k]**2) * numpy.eye(2)

@@ -33,14 +33,6 @@ class InformationFilter:
         rows = numpy.block([[numpy.eye(m), numpy.zeros((m, n))], [-M @ noise_root, M]])
         self.R = triangular(rows)[m:m + n, m:]
 
-    def renew(self, places, sigma):
-        """States whose value is new and independent of the former one: a carrier that is tracked again."""
-        n = len(self.R)
-        transition, root = numpy.eye(n), numpy.zeros((n, len(places)))
-        for column, place in enumerate(places):
-            transition[place, place], root[place, column] = 1e-9, sigma
-        self.propagate(transition, root)
-
     def covariance(self, count):
         """Of the first `count` states; infinite where a direction of the state is not determined."""
         singular = numpy.linalg.svd(self.R / numpy.maximum(numpy.linalg.norm(self.R, axis=0), 1e-300), compute_uv=False)
@@ -59,8 +51,8 @@ class GaussMarkov:
     def sigmas(self):
         return [self.sigma] * len(self.places)
 
-    def fill(self, dt, transition, noise):
-        """Its rows of the transition over dt, and of the covariance of the noise."""
+    def fill(self, _, dt, transition, noise):
+        """Its rows of the transition from a time over dt, and of the covariance of the noise."""
         decay = numpy.exp(-dt / self.time_s)
         for place in self.places:
             transition[place, place] = decay

@@ -1,21 +1,8 @@
 """Correlation in time of measured errors."""
 import numpy
 
-
-def correlation(series, period, lags=30):
-    """Share and time (s) of the first-order process in unit-variance series of (times, values), beside white noise."""
-    products = numpy.zeros(lags)
-    for lag in range(1, lags + 1):
-        pairs = [(values[late] * values[early]) for times, values in series
-                 for early, late in [neighbours(times, lag * period)] if len(early)]
-        products[lag - 1] = numpy.mean(numpy.concatenate(pairs)) if pairs else 0.0
-    best = (numpy.inf, 0.0, period)
-    for time in period * numpy.geomspace(1, 300, 60):
-        shape = numpy.exp(-period * numpy.arange(1, lags + 1) / time)
-        share = numpy.clip(shape @ products / (shape @ shape), 0.0, 1.0)
-        misfit = ((products - share * shape)**2).sum()
-        best = min(best, (misfit, share, time))
-    return best[1:]
+LAGS = numpy.unique(numpy.geomspace(1, 240, 30).astype(int))
+TIMES = numpy.geomspace(1, 500, 25)  # periods
 
 
 def neighbours(times, lag):
@@ -25,3 +12,36 @@ def neighbours(times, lag):
     late = late[early]
     same = numpy.abs(times[late] - times[early] - lag) < 1e-2
     return early[same], late[same]
+
+
+def correlation(series, period):
+    """Shares and times (s) of two first-order processes, the rest being white, in series [(times, values)] of unit mean square: least
+    squares of the autocorrelation, each lag by its number of pairs."""
+    products, weights = numpy.zeros(len(LAGS)), numpy.zeros(len(LAGS))
+    for k, lag in enumerate(LAGS):
+        for times, values in series:
+            early, late = neighbours(times, lag * period)
+            products[k] += values[early] @ values[late]
+            weights[k] += len(early)
+    seen = weights > 0
+    target, weight = products[seen] / weights[seen], numpy.sqrt(weights[seen])
+    best = (numpy.inf, (0.0, 0.0), (period, period))
+    for k, fast in enumerate(TIMES):
+        for slow in TIMES[k + 1:]:
+            shapes = numpy.exp(-LAGS[seen, None] / numpy.array([fast, slow]))
+            shares = not_negative(shapes * weight[:, None], target * weight)
+            shares = shares / max(1.0, shares.sum())
+            misfit = (((target - shapes @ shares) * weight)**2).sum()
+            if misfit < best[0]:
+                best = (misfit, tuple(shares), (fast * period, slow * period))
+    return best[1:]
+
+
+def not_negative(columns, values):
+    """Least squares with two factors that are not negative."""
+    solution = numpy.linalg.lstsq(columns, values, rcond=None)[0]
+    if (solution >= 0).all():
+        return solution
+    single = numpy.maximum(0, columns.T @ values / (columns**2).sum(0))
+    keep = int(numpy.argmax(single**2 * (columns**2).sum(0)))
+    return numpy.where(numpy.arange(2) == keep, single, 0.0)
