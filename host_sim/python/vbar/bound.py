@@ -6,9 +6,9 @@ import numpy
 
 from vbar.bound_bearings import Bearings
 from vbar.bound_carrier_phases import CarrierPhases
-from vbar.bound_flight import Flight, columns
+from vbar.bound_flight import BoundError, Flight, columns
 from vbar.bound_keypoints import Keypoints
-from vbar.information_filter import GaussMarkov, InformationFilter
+from vbar.information_filter import GaussMarkov, InformationFilter, root
 from vbar.relative_dynamics import is_sunlit, rtn_axes, transitions
 
 # 1 sigma and correlation time of the unmodelled differential accelerations, as fsw/filter/relative_orbit.h states them: along the
@@ -16,6 +16,7 @@ from vbar.relative_dynamics import is_sunlit, rtn_axes, transitions
 ALONG_TRACK, FROM_SUN = (1e-9, 6000.0), (3e-8, 86400.0)
 KNOWN = 1e-3  # factor on the sigma of what is taken as known
 BURNS = "burns"
+DYNAMICS = ("differential drag", "radiation pressure")
 
 
 class Dynamics:
@@ -25,7 +26,7 @@ class Dynamics:
     def __init__(self, flight, times, empirical):
         """empirical: place of the accelerations in RTN among the states, which replace white noise; None: white noise."""
         self.psd = flight.stated("acceleration_psd_min", 1e-15) if empirical is None else 0.0
-        self.unknowns = {"differential drag": GaussMarkov(6, 1, *ALONG_TRACK), "radiation pressure": GaussMarkov(7, 1, *FROM_SUN)}
+        self.unknowns = dict(zip(DYNAMICS, (GaussMarkov(6, 1, *ALONG_TRACK), GaussMarkov(7, 1, *FROM_SUN))))
         _, target = flight.states(times)
         self.steps = numpy.diff(times)
         self.partials = transitions(target[:-1], self.steps)
@@ -90,45 +91,87 @@ def bound_of(flight, measurements, known=()):
     return result
 
 
-def root(covariance):
-    """Columns w with w w^T = covariance, of a covariance that may be singular."""
-    scale = numpy.sqrt(numpy.maximum(numpy.diagonal(covariance), 1e-300))
-    values, vectors = numpy.linalg.eigh(covariance / numpy.outer(scale, scale))
-    used = values > 1e-12
-    return scale[:, None] * vectors[:, used] * numpy.sqrt(values[used])
-
-
 def measurements_of(flights):
     """Those of the source that determines the orbit of these runs."""
-    tables = flights[0].run.tables
-    if "gnss" in tables and (flights[0].run.gnss.fixed > 0).any():
+    run = flights[0].run
+    if "gnss" in run.tables and (run.gnss.fixed > 0).any():
         return CarrierPhases.of(flights)
-    return (Keypoints if "keypoints" in tables else Bearings).of(flights)
+    kind = next((kind for table, kind in (("poses", Keypoints), ("images", Bearings)) if table in run.tables), None)
+    if kind is None:
+        raise BoundError(f"{run.folder} has neither images nor poses nor fixed integers of carrier phase")
+    return kind.of(flights)
+
+
+def norm(flight, name):
+    """Of the three components of a column of errors() at each record."""
+    return numpy.linalg.norm(columns(flight.run.errors(), *(f"position_{name}_{axis}_m" for axis in "rtn")), axis=1)
+
+
+def rms(values):
+    return numpy.sqrt(numpy.nanmean(numpy.square(values))) if numpy.isfinite(values).any() else numpy.nan
+
+
+def legs_of(flight):
+    """(waypoint, its record, records of the second half of the leg to it)."""
+    ways = flight.run.waypoints
+    ends = numpy.minimum(numpy.searchsorted(flight.time, ways.time_s.to_numpy(float) - 1e-6), len(flight.time) - 1)
+    return [(int(index), end, slice((begin + end) // 2, end + 1)) for index, begin, end in zip(ways["index"][1:], ends[:-1], ends[1:])]
+
+
+def efficiency(flights, instruments, known):
+    """Rows by waypoint: medians over the runs, and root mean squares of the ratios."""
+    rows = {}
+    for flight, instrument in zip(flights, instruments):
+        bound, error, sigma = bound_of(flight, instrument, known), norm(flight, "error"), norm(flight, "sigma")
+        distance = numpy.linalg.norm(flight.target[:, :3] - flight.servicer[:, :3], axis=1)
+        for index, at, late in legs_of(flight):
+            rows.setdefault(index, []).append((distance[at], bound[at], sigma[at], error[at], sigma[at] / bound[at], error[at] / bound[at],
+                                               rms(error[late] / bound[late])))
+    return {index: [*numpy.nanmedian(numpy.array(values)[:, :5], axis=0), rms(numpy.array(values)[:, 5]), rms(numpy.array(values)[:, 6])]
+            for index, values in rows.items()}
+
+
+def unknowns_of(flight, instrument):
+    return [BURNS, *DYNAMICS, *instrument.unknowns(Dynamics.size)]
+
+
+def budget(flight, instrument, known):
+    """{unknown: bound at each waypoint if it were known, as share of the bound}."""
+    ends = [at for _, at, _ in legs_of(flight)]
+    whole = bound_of(flight, instrument, known)[ends]
+    return {name: bound_of(flight, instrument, {*known, name})[ends] / whole for name in unknowns_of(flight, instrument) if name not in known}
+
+
+def table(header, rows):
+    """Lines of Markdown."""
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in (header, ["---"] * len(header), *rows))
 
 
 def main(arguments=None):
-    parser = argparse.ArgumentParser(prog="vbar bound", description="the Cramer-Rao bound of the relative position (docs/bound.md)")
+    parser = argparse.ArgumentParser(prog="vbar bound", description="the Cramer-Rao bound of the relative position, and the efficiency of navigation (docs/bound.md)")
     parser.add_argument("run", nargs="+", help="run folders of one mission")
-    parser.add_argument("--known", action="append", default=[], help="what is taken as known")
+    parser.add_argument("--known", action="append", default=[], metavar="UNKNOWN", help="taken as known; may be given again")
+    parser.add_argument("--budget", action="store_true", help="of the first run: the bound if one unknown after the other were known")
     options = parser.parse_args(arguments)
-    flights = [Flight(folder) for folder in options.run]
-    instruments = measurements_of(flights)
-    print(instruments[0].noise_text())
-    for flight, instrument in zip(flights, instruments):
-        bound = bound_of(flight, instrument, options.known)
-        errors = flight.run.errors()
-        error = numpy.linalg.norm(columns(errors, *(f"position_error_{a}_m" for a in "rtn")), axis=1)
-        sigma = numpy.linalg.norm(columns(errors, *(f"position_sigma_{a}_m" for a in "rtn")), axis=1)
-        for way in flight.run.waypoints.itertuples():
-            k = numpy.searchsorted(flight.time, way.time_s - 1e-6)
-            k = min(k, len(error) - 1)
-            last = slice(max(0, k - 100), k + 1)
-            rms = [numpy.sqrt(numpy.nanmean(x[last]**2)) for x in (error, sigma, bound)]
-            rng = numpy.linalg.norm(flight.target[k, :3] - flight.servicer[k, :3])
-            print(f"{way.index:3.0f} range {rng:9.1f} bound {bound[k]:8.4f} sigma {sigma[k]:8.4f} error {error[k]:8.4f} s/b {sigma[k]/bound[k]:6.2f} e/b {error[k]/bound[k]:6.2f}"
-                  f" | last orbit rms e {rms[0]:8.4f} s {rms[1]:8.4f} b {rms[2]:8.4f} e/b {rms[0]/rms[2]:6.2f}")
+    try:
+        flights = [Flight(folder) for folder in options.run]
+        if len(names := {flight.mission["mission"].get("name", "") for flight in flights}) > 1:
+            raise BoundError(f"runs of the missions {', '.join(sorted(names))}: the noise is measured over all runs, which must be of one mission")
+        instruments = measurements_of(flights)
+        accepted = unknowns_of(flights[0], instruments[0])
+        for name in options.known:
+            if name not in accepted:
+                raise BoundError(f"--known {name}: accepted are {', '.join(accepted)}")
+        print(f"{names.pop()}, {len(flights)} run{'s' * (len(flights) > 1)}\n{instruments[0].noise_text()}\n")
+        rows = efficiency(flights, instruments, options.known)
+        print(table(["waypoint", "range, m", "bound, m", "sigma, m", "error, m", "sigma / bound", "error / bound, rms", "in the second half of the leg, rms"],
+                    [[str(index), f"{values[0]:.1f}", *(f"{value:.3g}" for value in values[1:4]), *(f"{value:.2f}" for value in values[4:])]
+                     for index, values in rows.items()]))
+        if options.budget:
+            shares = budget(flights[0], instruments[0], options.known)
+            print("\n" + table(["known", *(f"waypoint {index}" for index in rows)],
+                               [[name, *(f"{share:.2f}" for share in values)] for name, values in shares.items()]))
+    except (BoundError, OSError, KeyError, ValueError) as error:
+        print(f"vbar bound: {error.args[0] if isinstance(error, KeyError) else error}", file=sys.stderr)
+        return 2
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -11,6 +11,24 @@ WITHOUT_APRIORI_M = (1e3, 1e5, 1e4, 1e4)
 J2000 = numpy.datetime64("2000-01-01T12:00:00")
 
 
+class BoundError(Exception):
+    """A sentence for the user."""
+
+
+def set_keys(mission, overrides):
+    """Applies the lines key=value of overrides.txt to the tables of a mission."""
+    for line in overrides.splitlines():
+        path, _, text = line.partition("=")
+        *folders, key = path.strip().split(".")
+        place = mission
+        for folder in folders:
+            place = next((item for item in place if item.get("name") == folder), {}) if isinstance(place, list) else place.setdefault(folder, {})
+        try:
+            place[key] = tomllib.loads(f"value = {text}")["value"]
+        except tomllib.TOMLDecodeError:
+            place[key] = text
+
+
 def columns(table, *names):
     return table[list(names)].to_numpy(float)
 
@@ -25,6 +43,8 @@ class Flight:
     def __init__(self, folder):
         self.run = Run(folder)
         self.mission = tomllib.loads((self.run.folder / "mission.toml").read_text())
+        overrides = self.run.folder / "overrides.txt"
+        set_keys(self.mission, overrides.read_text() if overrides.is_file() else "")
         truth = self.run.truth
         self.time = truth.time_s.to_numpy(float)
         self.servicer, self.target = (
@@ -32,7 +52,9 @@ class Flight:
             for craft in ("servicer", "target"))
         self.epoch = numpy.datetime64(self.mission["mission"]["epoch_utc"].rstrip("Z"))
         self.navigation = self.mission.get("navigation", {})
-        self.servicer_keys = next(craft for craft in self.mission["spacecraft"] if "flight_computer" in craft)
+        self.servicer_keys = next((craft for craft in self.mission.get("spacecraft", []) if "flight_computer" in craft), None)
+        if self.servicer_keys is None:
+            raise BoundError(f"{folder}: no spacecraft of its mission has a flight_computer")
 
     def stated(self, key, default):
         return float(self.navigation.get(key, default))

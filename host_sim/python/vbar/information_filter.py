@@ -11,6 +11,14 @@ def triangular(rows):
     return numpy.linalg.qr(rows, mode="r")
 
 
+def root(covariance):
+    """Columns w with w w^T = covariance, of a covariance that may be singular."""
+    scale = numpy.sqrt(numpy.maximum(numpy.diagonal(covariance), 1e-300))
+    values, vectors = numpy.linalg.eigh(covariance / numpy.outer(scale, scale))
+    used = values > 1e-12
+    return scale[:, None] * vectors[:, used] * numpy.sqrt(values[used])
+
+
 class InformationFilter:
     def __init__(self, size):
         self.R = numpy.zeros((size, size))
