@@ -14,6 +14,8 @@ from vbar.relative_dynamics import is_sunlit, rtn_axes, transitions
 # 1 sigma and correlation time of the unmodelled differential accelerations, as fsw/filter/relative_orbit.h states them: along the
 # track (drag), and away from the Sun (radiation pressure).
 ALONG_TRACK, FROM_SUN = (1e-9, 6000.0), (3e-8, 86400.0)
+HEADER = ["waypoint", "range, m", "bound as flown, m", "bound as stated, m", "sigma, m", "error, m", "sigma / bound as stated",
+          "error / bound as flown", "the same, second half of the leg"]
 KNOWN = 1e-3  # factor on the sigma of what is taken as known
 BURNS = "burns"
 DYNAMICS = ("differential drag", "radiation pressure")
@@ -57,16 +59,18 @@ def events_of(flight, measurements, burn_times):
                   + [(time, 0 if by <= time else 2, "measurement", k) for k, (time, by) in enumerate(received) if time <= end])
 
 
-def bound_of(flight, measurements, known=()):
-    """1 sigma of the relative position (m) at each record: root of the trace of the bound. `known`: unknowns that are taken as known."""
-    burn_times, burn_sigmas = flight.burns()
+def bound_of(flight, measurements, known=(), flown=False):
+    """1 sigma of the relative position (m) at each record: root of the trace of the bound. `known`: unknowns that are taken as known;
+    `flown`: sizes of burn errors and of lasting errors of measurements as they were in these runs, in place of those stated to
+    navigation."""
+    burn_times, burn_sigmas = flight.burns(flown)
     burn_sigmas = burn_sigmas * (KNOWN if BURNS in known else 1.0)
     events = events_of(flight, measurements, burn_times)
     first = Dynamics.size
     dynamics = Dynamics(flight, numpy.array([event[0] for event in events]), measurements.empirical_acceleration(first))
     unknowns = dynamics.unknowns | measurements.unknowns(first)
     for name, process in unknowns.items():
-        process.sigma *= KNOWN if name in known else 1.0
+        process.sigma = (measurements.flown_sigmas.get(name, process.sigma) if flown else process.sigma) * (KNOWN if group(name) in known else 1.0)
     size = first + measurements.size
     information = InformationFilter(size)
     information.measure(numpy.eye(size)[:6], flight.apriori())
@@ -119,27 +123,34 @@ def legs_of(flight):
 
 
 def efficiency(flights, instruments, known):
-    """Rows by waypoint: medians over the runs, and root mean squares of the ratios."""
+    """{waypoint: [range, bound as flown, bound as stated, sigma, error; sigma over the bound as stated; error over the bound as flown at
+    the waypoint, and in the second half of the leg to it]}: medians over the runs, of the last two root mean squares."""
     rows = {}
     for flight, instrument in zip(flights, instruments):
-        bound, error, sigma = bound_of(flight, instrument, known), norm(flight, "error"), norm(flight, "sigma")
+        flown, stated = (bound_of(flight, instrument, known, flown=of) for of in (True, False))
+        error, sigma = norm(flight, "error"), norm(flight, "sigma")
         distance = numpy.linalg.norm(flight.target[:, :3] - flight.servicer[:, :3], axis=1)
         for index, at, late in legs_of(flight):
-            rows.setdefault(index, []).append((distance[at], bound[at], sigma[at], error[at], sigma[at] / bound[at], error[at] / bound[at],
-                                               rms(error[late] / bound[late])))
-    return {index: [*numpy.nanmedian(numpy.array(values)[:, :5], axis=0), rms(numpy.array(values)[:, 5]), rms(numpy.array(values)[:, 6])]
+            rows.setdefault(index, []).append((distance[at], flown[at], stated[at], sigma[at], error[at], sigma[at] / stated[at],
+                                               error[at] / flown[at], rms(error[late] / flown[late])))
+    return {index: [*numpy.nanmedian(numpy.array(values)[:, :6], axis=0), *(rms(numpy.array(values)[:, k]) for k in (6, 7))]
             for index, values in rows.items()}
 
 
-def unknowns_of(flight, instrument):
-    return [BURNS, *DYNAMICS, *instrument.unknowns(Dynamics.size)]
+def group(name):
+    """Processes whose names agree up to a comma are one unknown for a reader."""
+    return name.partition(",")[0]
+
+
+def unknowns_of(instrument):
+    return list(dict.fromkeys([BURNS, *DYNAMICS, *map(group, instrument.unknowns(Dynamics.size))]))
 
 
 def budget(flight, instrument, known):
     """{unknown: bound at each waypoint if it were known, as share of the bound}."""
     ends = [at for _, at, _ in legs_of(flight)]
-    whole = bound_of(flight, instrument, known)[ends]
-    return {name: bound_of(flight, instrument, {*known, name})[ends] / whole for name in unknowns_of(flight, instrument) if name not in known}
+    whole = bound_of(flight, instrument, known, flown=True)[ends]
+    return {name: bound_of(flight, instrument, {*known, name}, flown=True)[ends] / whole for name in unknowns_of(instrument) if name not in known}
 
 
 def table(header, rows):
@@ -158,14 +169,14 @@ def main(arguments=None):
         if len(names := {flight.mission["mission"].get("name", "") for flight in flights}) > 1:
             raise BoundError(f"runs of the missions {', '.join(sorted(names))}: the noise is measured over all runs, which must be of one mission")
         instruments = measurements_of(flights)
-        accepted = unknowns_of(flights[0], instruments[0])
+        accepted = unknowns_of(instruments[0])
         for name in options.known:
             if name not in accepted:
                 raise BoundError(f"--known {name}: accepted are {', '.join(accepted)}")
         print(f"{names.pop()}, {len(flights)} run{'s' * (len(flights) > 1)}\n{instruments[0].noise_text()}\n")
         rows = efficiency(flights, instruments, options.known)
-        print(table(["waypoint", "range, m", "bound, m", "sigma, m", "error, m", "sigma / bound", "error / bound, rms", "in the second half of the leg, rms"],
-                    [[str(index), f"{values[0]:.1f}", *(f"{value:.3g}" for value in values[1:4]), *(f"{value:.2f}" for value in values[4:])]
+        print(table(HEADER,
+                    [[str(index), f"{values[0]:.1f}", *(f"{value:.3g}" for value in values[1:5]), *(f"{value:.2f}" for value in values[5:])]
                      for index, values in rows.items()]))
         if options.budget:
             shares = budget(flights[0], instruments[0], options.known)

@@ -72,19 +72,23 @@ class Bearings:
         shares, times = correlation(series, period)
         for bearings in all_of:
             bearings.angle, bearings.length, bearings.shares, bearings.times = angle, length, shares, times
+            fits = numpy.sqrt(numpy.mean([other.fit**2 for other in all_of], axis=0))
+            bearings.flown_sigmas = {"bearing bias": numpy.hypot(*fits[:2]) / 2**0.5, "brightness offset": fits[2], "earthlight": fits[3]}
         return all_of
 
     def noise_text(self):
         return (f"noise of a bearing, each axis: {self.angle**0.5 / ARCSEC:.2f} arcsec and {100 * self.length**0.5:.1f} cm at the target, "
-                f"{100 * self.shares[0]:.0f} % of the latter's variance correlated over {self.times[0]:.0f} s, {100 * self.shares[1]:.0f} % over {self.times[1]:.0f} s")
+                f"{100 * self.shares[0]:.0f} % of the latter's variance correlated over {self.times[0]:.0f} s, {100 * self.shares[1]:.0f} % over {self.times[1]:.0f} s\n"
+                f"lasting: bias {self.flown_sigmas['bearing bias'] / ARCSEC:.2f} arcsec, displacement of the light towards the Sun "
+                f"{100 * self.flown_sigmas['brightness offset']:.1f} cm, towards the Earth {100 * self.flown_sigmas['earthlight']:.1f} cm")
 
     def residuals(self):
-        """Errors (rad) without the displacements towards Sun and Earth that fit the whole run best."""
+        """Errors (rad) without the bias and the displacements towards Sun and Earth that fit the whole run best."""
         weight = numpy.repeat(1 / numpy.hypot(ARCSEC, 0.1 / self.range), 2)
-        columns = (self.displacements / self.range[:, None, None]).reshape(-1, 2)
-        fit = numpy.linalg.lstsq(columns * weight[:, None], self.error.ravel() * weight, rcond=None)[0]
-        self.fit = fit
-        return self.error - (columns @ fit).reshape(-1, 2)
+        displacements = (self.displacements / self.range[:, None, None]).reshape(-1, 2)
+        effects = numpy.hstack([numpy.tile(numpy.eye(2), (len(self.time), 1)), displacements])
+        self.fit = numpy.linalg.lstsq(effects * weight[:, None], self.error.ravel() * weight, rcond=None)[0]
+        return self.error - (effects @ self.fit).reshape(-1, 2)
 
     def unknowns(self, first):
         return {"bearing bias": GaussMarkov(first, 2, self.bias_sigma, BIAS_TIME_S),

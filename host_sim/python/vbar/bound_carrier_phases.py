@@ -10,6 +10,7 @@ from vbar.relative_dynamics import rtn_axes
 class CarrierPhases:
     """Single differences of carrier phase whose integers are known: each signal has one constant. Unknowns: offset of the antennas (3,
     RTN), constants of the signals (4), acceleration (3, RTN). The clocks are free at every epoch."""
+    flown_sigmas = {}
     size = 10
 
     def __init__(self, flight):

@@ -8,6 +8,7 @@ from vbar.run_folder import Run
 
 # 1 sigma, times the semi-major axis, of da, dlambda, de, di, where a mission states no a-priori orbit.
 WITHOUT_APRIORI_M = (1e3, 1e5, 1e4, 1e4)
+SMALLEST_BURN_ERROR_MPS = 1e-9
 J2000 = numpy.datetime64("2000-01-01T12:00:00")
 
 
@@ -70,15 +71,18 @@ class Flight:
     def sun(self, times):
         return sun_position(self.julian_date(times))
 
-    def burns(self):
-        """Times, and 1 sigma per axis that the mission states of each (m/s)."""
+    def burns(self, flown):
+        """Times, and 1 sigma per axis of each (m/s): by the errors of the thruster that flies, or as stated to navigation."""
         if "maneuvers" not in self.run.tables:
             return numpy.zeros(0), numpy.zeros(0)
         table = self.run.maneuvers
         table = table[table.accepted == 1]
         size = numpy.linalg.norm(vector(table, "executed_dv_rtn", "mps", "rtn"), axis=1)
-        share = self.stated("maneuver_sigma_percent", 0.2) / 100
-        return table.execution_time_s.to_numpy(float), numpy.hypot(share * size, 1e-3 * self.stated("maneuver_sigma_mmps", 0.002))
+        thruster = self.servicer_keys.get("actuators", {}).get("thruster", {})
+        share = (max(float(thruster.get("magnitude_error_percent", 0.0)) / 100, numpy.radians(float(thruster.get("pointing_error_deg", 0.0))))
+                 if flown else self.stated("maneuver_sigma_percent", 0.2) / 100)
+        floor = SMALLEST_BURN_ERROR_MPS if flown else 1e-3 * self.stated("maneuver_sigma_mmps", 0.002)
+        return table.execution_time_s.to_numpy(float), numpy.hypot(share * size, floor)
 
     def apriori(self):
         """Covariance (6, 6) of the relative inertial state at the first record."""

@@ -1,9 +1,9 @@
 """Keypoints of a tumbling target as measurements of the bound.
 
-The errors of the keypoints of an image act on the orbit by the pose that they imitate: the weighted least-squares fit of two angles
-across the line of sight, of a relative change of the distance, and of a rotation, to the recorded errors. Each of these six, over its
-standard deviation by the keypoints' stated covariances, is white noise and two first-order processes of measured variance: a network
-errs alike for views that are alike.
+The errors of the keypoints of an image act on the orbit by the pose that they imitate: the weighted least-squares fit of a rotation, of
+two angles across the line of sight, and of a relative change of the distance to the recorded errors. Whitened by the covariance that
+follows from the keypoints' stated ones, with the correlations of rotation and place, each of these six is white noise and two
+first-order processes of measured variance: a network errs alike for views that are alike.
 """
 import tomllib
 
@@ -17,8 +17,9 @@ from vbar.programs import data_folder
 ARCSEC = numpy.pi / 180 / 3600
 # As fsw/measurements/state_blocks/keypoint_blocks.h states them.
 MOUNT, ORIGIN_SIGMA_M = (60 * ARCSEC, 43200.0), 0.01
+SMALLEST_WHITE_SHARE = 0.01
 ATTITUDE_SIGMA, RATE_SIGMA = 1.0, 0.05  # rad, rad/s: nothing is known before the first image
-COMPONENTS = ("across x", "across y", "distance", "rotation x", "rotation y", "rotation z")
+COMPONENTS = ("rotation", "rotation", "rotation", "angle across", "angle across", "distance")
 
 
 def matrix(quaternion):
@@ -66,6 +67,9 @@ class Keypoints:
         target = next(craft for craft in flight.mission["spacecraft"] if craft["name"] == keys.get("target", "target"))
         body = tomllib.loads((data_folder() / "bodies" / f"{target['body']}.toml").read_text())
         camera = tomllib.loads((data_folder() / "cameras" / f"{keys['camera']}.toml").read_text())
+        # The digital camera is mounted as stated, and the keypoints are the model's own.
+        knowledge = flight.servicer_keys["sensors"].get("gnss", {}).get("body_frame", {}).get("attitude_knowledge_arcsec", 20.0)
+        self.flown_sigmas = {"camera mount": float(knowledge) * ARCSEC, "keypoint origin": 1e-3 * ORIGIN_SIGMA_M}
         xx, yy, zz, xy, xz, yz = body["inertia_kgm2"]
         self.inertia = numpy.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
         self.points = numpy.array([point["at_m"] for point in body["keypoints"]]) - body["centre_of_mass_m"]
@@ -93,23 +97,25 @@ class Keypoints:
         self.range = numpy.linalg.norm(self.sight, axis=1)
         self.camera_body = self.camera @ numpy.swapaxes(self.body, 1, 2)
         fits = [self.pose_of(k, groups[image]) for k, image in enumerate(poses.image)]
-        self.error, self.stated_sigma = (numpy.array(part).reshape(-1, 6) for part in zip(*fits))
+        error, covariance = (numpy.array(part) for part in zip(*fits))
+        self.root = numpy.linalg.cholesky(covariance)
+        self.error = numpy.linalg.solve(self.root, error[:, :, None])[:, :, 0]
 
     def pose_of(self, k, rows):
-        """The pose that the errors of an image's keypoints imitate, and its standard deviations by their covariances."""
+        """The pose that the errors of an image's keypoints imitate, and its covariance by theirs."""
         points = self.points[rows.keypoint]
         place = self.sight[k] + points @ self.camera_body[k].T
         depth = place[:, 2]
         projection = numpy.zeros((len(rows), 2, 3))
         projection[:, 0, 0] = projection[:, 1, 1] = self.focal_px / depth
         projection[:, :, 2] = -self.focal_px * place[:, :2] / depth[:, None]**2
-        J = numpy.concatenate([projection * self.range[k], projection @ (-self.camera_body[k] @ cross_matrix(points))], 2)
+        J = numpy.concatenate([projection @ (-self.camera_body[k] @ cross_matrix(points)), projection * self.range[k]], 2)
         xx, xy, yy = columns(rows, "covariance_xx_px2", "covariance_xy_px2", "covariance_yy_px2").T
         weight = numpy.linalg.inv(numpy.stack([numpy.stack([xx, xy], -1), numpy.stack([xy, yy], -1)], -2))
         error = columns(rows, "error_x_px", "error_y_px")
         normal = numpy.einsum("kai,kab,kbj->ij", J, weight, J)
         covariance = numpy.linalg.inv(normal)
-        return covariance @ numpy.einsum("kai,kab,kb->i", J, weight, error), numpy.sqrt(numpy.diagonal(covariance))
+        return covariance @ numpy.einsum("kai,kab,kb->i", J, weight, error), covariance
 
     @classmethod
     def of(cls, flights):
@@ -118,7 +124,7 @@ class Keypoints:
         period = numpy.median(numpy.diff(all_of[0].time))
         noise = []
         for component in range(6):
-            series = [(own.time, own.error[:, component] / own.stated_sigma[:, component]) for own in all_of]
+            series = [(own.time, own.error[:, component]) for own in all_of]
             # Standard deviation and limit by quantiles: a view taken for another is rejected by the flight software, too.
             scale = numpy.median(numpy.abs(numpy.concatenate([values for _, values in series]))) / 0.6745
             series = [(times[kept], values[kept]) for times, values in series for kept in [numpy.abs(values) < 5 * scale]]
@@ -129,13 +135,13 @@ class Keypoints:
         return all_of
 
     def noise_text(self):
-        return "\n".join(f"noise of {name}: {sigma:.2f} times the stated; {100 * shares[0]:.0f} % of the variance over {times[0]:.0f} s, {100 * shares[1]:.0f} % over {times[1]:.0f} s"
-                         f"; median stated {numpy.median(self.stated_sigma[:, k]):.2e}" for k, (name, (sigma, shares, times)) in enumerate(zip(COMPONENTS, self.noise)))
+        return "\n".join(f"keypoints: {name}: {sigma:.2f} times the stated sigma; {100 * shares[0]:.0f} % of the variance correlated over "
+                         f"{times[0]:.0f} s, {100 * shares[1]:.0f} % over {times[1]:.0f} s" for name, (sigma, shares, times) in zip(COMPONENTS, self.noise))
 
     def unknowns(self, first):
-        errors = {f"keypoint errors {6 * which + component}": GaussMarkov(first + 11 + 6 * which + component, 1,
-                                                                         max(sigma * shares[which]**0.5, 1e-3), times[which])
-                  for which in range(2) for component, (sigma, shares, times) in enumerate(self.noise)}
+        errors = {f"keypoints: {name}, {component} {which}": GaussMarkov(first + 11 + 6 * which + component, 1,
+                                                                        max(sigma * shares[which]**0.5, 1e-3), times[which])
+                  for which in range(2) for component, (name, (sigma, shares, times)) in enumerate(zip(COMPONENTS, self.noise))}
         return {"attitude": RigidBody(first, self.record_times, self.rates, self.inertia, self.psd),
                 "camera mount": GaussMarkov(first + 6, 2, *MOUNT), "keypoint origin": GaussMarkov(first + 8, 3, ORIGIN_SIGMA_M, 1e12)} | errors
 
@@ -144,11 +150,11 @@ class Keypoints:
 
     def rows(self, k, size, first):
         H = numpy.zeros((6, size))
-        H[:3, :3] = self.camera[k] / self.range[k]
-        H[3:, first:first + 3] = numpy.eye(3)
-        H[:2, first + 6:first + 8] = numpy.eye(2)
-        H[:3, first + 8:first + 11] = self.camera_body[k] / self.range[k]
+        H[:3, first:first + 3] = numpy.eye(3)
+        H[3:, :3] = self.camera[k] / self.range[k]
+        H[3:5, first + 6:first + 8] = numpy.eye(2)
+        H[3:, first + 8:first + 11] = self.camera_body[k] / self.range[k]
         for which in range(2):
-            H[:, first + 11 + 6 * which:first + 17 + 6 * which] = numpy.diag(self.stated_sigma[k])
-        white = [sigma**2 * max(0.05, 1 - sum(shares)) for sigma, shares, _ in self.noise]
-        return H, numpy.diag(white * self.stated_sigma[k]**2)
+            H[:, first + 11 + 6 * which:first + 17 + 6 * which] = self.root[k]
+        white = [sigma**2 * max(SMALLEST_WHITE_SHARE, 1 - sum(shares)) for sigma, shares, _ in self.noise]
+        return H, self.root[k] @ numpy.diag(white) @ self.root[k].T
