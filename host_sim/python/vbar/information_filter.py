@@ -42,11 +42,11 @@ class InformationFilter:
         self.R = triangular(rows)[m:m + n, m:]
 
     def covariance(self, count):
-        """Of the first `count` states; infinite where a direction of the state is not determined."""
-        singular = numpy.linalg.svd(self.R / numpy.maximum(numpy.linalg.norm(self.R, axis=0), 1e-300), compute_uv=False)
-        if singular[-1] < 1e-13 * singular[0]:
+        """Of the first `count` states; infinite where a direction of the state has no information at all."""
+        try:
+            inverse = numpy.linalg.inv(self.R)[:count]
+        except numpy.linalg.LinAlgError:
             return numpy.full((count, count), numpy.inf)
-        inverse = numpy.linalg.inv(self.R)[:count]
         return inverse @ inverse.T
 
 

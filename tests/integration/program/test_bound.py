@@ -70,10 +70,10 @@ class BoundFilter(unittest.TestCase):
         self.assertAlmostEqual(numpy.average(times, weights=shares), 100.0, delta=30.0)
 
     def test_noise_of_an_angle_and_a_length(self):
-        """Chi-square of 20,000 draws: both variances to 5 %."""
+        """Chi-square of some 10,000 draws where either prevails: both variances to 1.4 %, 1 sigma."""
         from vbar.bound_bearings import variances
         draw = numpy.random.default_rng(8)
-        distances = numpy.geomspace(100.0, 70000.0, 20000)
+        distances = numpy.geomspace(1e3, 1e6, 20000)
         angle, length = variances((draw.normal(size=20000) * numpy.hypot(3e-6, 0.1 / distances))**2, distances)
         self.assertAlmostEqual(angle / 9e-12, 1.0, delta=0.05)
         self.assertAlmostEqual(length / 0.01, 1.0, delta=0.05)
@@ -129,8 +129,8 @@ class BoundDynamics(unittest.TestCase):
         found = self.to_rtn(end) @ whole @ numpy.linalg.inv(self.to_rtn(states[0]))
         expected = clohessy_wiltshire(self.n, 100 * self.STEP)
         scale = numpy.array([1, 1, 1, self.n, self.n, self.n])
-        # The integration truncates 1e-8 of a step of 0.06 rad.
-        numpy.testing.assert_allclose(found / scale[:, None] * scale, expected / scale[:, None] * scale, atol=2e-5)
+        # A step of 0.06 rad is truncated at the fifth order, 1e-8, which grows along the track with the square of the 100 steps.
+        numpy.testing.assert_allclose(found / scale[:, None] * scale, expected / scale[:, None] * scale, atol=2e-4)
 
     def test_relative_elements_are_constants_of_the_motion(self):
         """All but the mean longitude, which drifts by -1.5 n t da (D'Amico 2010, 2.18)."""
@@ -142,37 +142,36 @@ class BoundDynamics(unittest.TestCase):
         expected[1, 0] = -1.5 * arc
         numpy.testing.assert_allclose(moved, expected, atol=1e-6)
 
-    def scale_of(self, burn_mps):
-        """1 sigma of the scale of an orbit 1 km behind, by bearings over one revolution; a burn across the track halfway is known."""
+    def sigma_by_bearings(self, burn_mps):
+        """1 sigma of the position on an orbit 1 km behind, by bearings over one revolution, with a known burn across the track halfway;
+        and the information along the state, relative to the largest."""
         from vbar.information_filter import InformationFilter
-        information = InformationFilter(6)
+        information, partial = InformationFilter(6), clohessy_wiltshire(self.n, self.STEP)
         x = numpy.array([0.0, -1000.0, 0.0, 0.0, 0.0, 0.0])  # R, T, N and rates: a stationary point of the linear motion
-        partial, sigma = clohessy_wiltshire(self.n, self.STEP), 1e-5
         for k in range(100):
-            if k == 50:
-                x = x - [0, 0, 0, 0, 0, burn_mps]
-            line = x[:3] / numpy.linalg.norm(x[:3])
+            x[5] -= burn_mps if k == 50 else 0.0
+            distance = numpy.linalg.norm(x[:3])
             H = numpy.zeros((2, 6))
-            H[:, :3] = numpy.linalg.svd(line[None])[2][1:] / numpy.linalg.norm(x[:3])
-            information.measure(H, sigma**2 * numpy.eye(2))
+            H[:, :3] = numpy.linalg.svd(x[None, :3])[2][1:] / distance
+            information.measure(H, 1e-10 * numpy.eye(2))
             x = partial @ x
             information.propagate(partial, numpy.zeros((6, 0)))
-        return numpy.linalg.norm(information.R @ x) / numpy.linalg.norm(information.R) / numpy.linalg.norm(x), information
+        along = numpy.linalg.norm(information.R @ x) / numpy.linalg.norm(information.R) / numpy.linalg.norm(x)
+        return numpy.sqrt(numpy.trace(information.covariance(3))), along
 
     def test_scale_is_unobservable_without_a_burn(self):
-        """A relative orbit and its multiples have the same bearings: the information along the state itself is zero (Woffinden and Geller
-        2009). A known burn ends that: the state is not a solution of one scale any more."""
-        information_along_state, information = self.scale_of(0.0)
-        self.assertLess(information_along_state, 1e-12)
-        self.assertTrue(numpy.isinf(information.covariance(3)).all())
-        information_along_state, information = self.scale_of(0.1)
-        self.assertGreater(information_along_state, 1e-6)
-        self.assertTrue(numpy.isfinite(information.covariance(3)).all())
+        """A relative orbit and its multiples have the same bearings: the information along the state itself is zero, and a known burn
+        determines the distance in inverse proportion to its size (Woffinden and Geller 2009)."""
+        sigma_m, along = self.sigma_by_bearings(0.0)
+        self.assertGreater(sigma_m, 1e6)
+        self.assertLess(along, 1e-14)
+        small, large = (self.sigma_by_bearings(burn)[0] for burn in (1e-4, 1e-3))
+        self.assertAlmostEqual(small / large, 10.0, delta=0.01)
 
 
 @unittest.skipUnless(numpy, "python3-pandas is not installed")
 class BoundRun(unittest.TestCase):
-    """Twenty-one minutes of experiment 3, to a waypoint."""
+    """An hour of experiment 3, to its first waypoint."""
 
     @classmethod
     def setUpClass(cls):
@@ -203,7 +202,7 @@ class BoundRun(unittest.TestCase):
         flight = Flight(self.folder / "run")
         [instrument] = bound.measurements_of([flight])
         formed = numpy.array([1 + len(instrument.rows(k, 18, 8)[0]) for k in range(len(instrument.time))])
-        used = flight.run.gnss.set_index("epoch_s").phases_used[instrument.time].to_numpy()
+        used = flight.run.gnss.drop_duplicates("epoch_s").set_index("epoch_s").phases_used[instrument.time].to_numpy()
         self.assertLess(numpy.abs(formed - used).mean(), 0.1 * used.mean())
 
     def test_page_of_a_run(self):
