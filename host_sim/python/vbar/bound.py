@@ -3,6 +3,7 @@ import argparse
 import sys
 
 import numpy
+import pandas
 
 from vbar.bound_bearings import Bearings
 from vbar.bound_carrier_phases import CarrierPhases
@@ -17,7 +18,7 @@ ALONG_TRACK, FROM_SUN = (1e-9, 6000.0), (3e-8, 86400.0)
 HEADER = ["waypoint", "range, m", "bound as flown, m", "bound as stated, m", "sigma, m", "error, m", "sigma / bound as stated",
           "error / bound as flown", "the same, second half of the leg"]
 KNOWN = 1e-3  # factor on the sigma of what is taken as known
-BURNS = "burns"
+BURNS, PROCESS_NOISE = "burns", "process noise"
 DYNAMICS = ("differential drag", "radiation pressure")
 
 
@@ -43,6 +44,7 @@ class Dynamics:
         self.directions = numpy.stack(directions, -1)
 
     def fill(self, k, transition, noise):
+        """Its rows of the transition from node k to the next, and of the covariance of the noise."""
         dt = self.steps[k]
         transition[:6, :6] = self.partials[k]
         transition[:3, self.places] += dt**2 / 2 * self.directions[k]
@@ -68,6 +70,7 @@ def bound_of(flight, measurements, known=(), flown=False):
     events = events_of(flight, measurements, burn_times)
     first = Dynamics.size
     dynamics = Dynamics(flight, numpy.array([event[0] for event in events]), measurements.empirical_acceleration(first))
+    dynamics.psd *= KNOWN**2 if PROCESS_NOISE in known else 1.0
     unknowns = dynamics.unknowns | measurements.unknowns(first)
     for name, process in unknowns.items():
         process.sigma = (measurements.flown_sigmas.get(name, process.sigma) if flown else process.sigma) * (KNOWN if group(name) in known else 1.0)
@@ -106,9 +109,15 @@ def measurements_of(flights):
     return kind.of(flights)
 
 
-def norm(flight, name):
-    """Of the three components of a column of errors() at each record."""
-    return numpy.linalg.norm(columns(flight.run.errors(), *(f"position_{name}_{axis}_m" for axis in "rtn")), axis=1)
+def assess(flight, instrument, known):
+    """By record: range, bounds, and sigma and error of navigation."""
+    errors = flight.run.errors()
+    position = {name: columns(errors, *(f"position_{name}_{axis}_m" for axis in "rtn")) for name in ("sigma", "error")}
+    return pandas.DataFrame({"run": flight.run.name, "time_s": flight.time,
+                             "range_m": numpy.linalg.norm(flight.target[:, :3] - flight.servicer[:, :3], axis=1),
+                             "bound_as_flown_m": bound_of(flight, instrument, known, flown=True),
+                             "bound_as_stated_m": bound_of(flight, instrument, known),
+                             **{f"{name}_m": numpy.linalg.norm(values, axis=1) for name, values in position.items()}})
 
 
 def rms(values):
@@ -122,17 +131,15 @@ def legs_of(flight):
     return [(int(index), end, slice((begin + end) // 2, end + 1)) for index, begin, end in zip(ways["index"][1:], ends[:-1], ends[1:])]
 
 
-def efficiency(flights, instruments, known):
+def efficiency(flights, records):
     """{waypoint: [range, bound as flown, bound as stated, sigma, error; sigma over the bound as stated; error over the bound as flown at
     the waypoint, and in the second half of the leg to it]}: medians over the runs, of the last two root mean squares."""
     rows = {}
-    for flight, instrument in zip(flights, instruments):
-        flown, stated = (bound_of(flight, instrument, known, flown=of) for of in (True, False))
-        error, sigma = norm(flight, "error"), norm(flight, "sigma")
-        distance = numpy.linalg.norm(flight.target[:, :3] - flight.servicer[:, :3], axis=1)
+    for flight, record in zip(flights, records):
+        ratio = (record.error_m / record.bound_as_flown_m).to_numpy()
         for index, at, late in legs_of(flight):
-            rows.setdefault(index, []).append((distance[at], flown[at], stated[at], sigma[at], error[at], sigma[at] / stated[at],
-                                               error[at] / flown[at], rms(error[late] / flown[late])))
+            numbers = record.iloc[at][["range_m", "bound_as_flown_m", "bound_as_stated_m", "sigma_m", "error_m"]].to_numpy(float)
+            rows.setdefault(index, []).append([*numbers, numbers[3] / numbers[2], ratio[at], rms(ratio[late])])
     return {index: [*numpy.nanmedian(numpy.array(values)[:, :6], axis=0), *(rms(numpy.array(values)[:, k]) for k in (6, 7))]
             for index, values in rows.items()}
 
@@ -143,7 +150,8 @@ def group(name):
 
 
 def unknowns_of(instrument):
-    return list(dict.fromkeys([BURNS, *DYNAMICS, *map(group, instrument.unknowns(Dynamics.size))]))
+    is_white = instrument.empirical_acceleration(Dynamics.size) is None
+    return list(dict.fromkeys([BURNS, *([PROCESS_NOISE] if is_white else []), *DYNAMICS, *map(group, instrument.unknowns(Dynamics.size))]))
 
 
 def budget(flight, instrument, known):
@@ -163,6 +171,7 @@ def main(arguments=None):
     parser.add_argument("run", nargs="+", help="run folders of one mission")
     parser.add_argument("--known", action="append", default=[], metavar="UNKNOWN", help="taken as known; may be given again")
     parser.add_argument("--budget", action="store_true", help="of the first run: the bound if one unknown after the other were known")
+    parser.add_argument("--records", metavar="FILE", help="write bounds, sigma and error at each record of each run as CSV")
     options = parser.parse_args(arguments)
     try:
         flights = [Flight(folder) for folder in options.run]
@@ -174,7 +183,10 @@ def main(arguments=None):
             if name not in accepted:
                 raise BoundError(f"--known {name}: accepted are {', '.join(accepted)}")
         print(f"{names.pop()}, {len(flights)} run{'s' * (len(flights) > 1)}\n{instruments[0].noise_text()}\n")
-        rows = efficiency(flights, instruments, options.known)
+        records = [assess(flight, instrument, options.known) for flight, instrument in zip(flights, instruments)]
+        if options.records:
+            pandas.concat(records).to_csv(options.records, index=False)
+        rows = efficiency(flights, records)
         print(table(HEADER,
                     [[str(index), f"{values[0]:.1f}", *(f"{value:.3g}" for value in values[1:5]), *(f"{value:.2f}" for value in values[5:])]
                      for index, values in rows.items()]))

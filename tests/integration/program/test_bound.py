@@ -10,7 +10,7 @@ sys.path.insert(0, str(BINARY / "python"))
 os.environ["VBAR"] = str(BINARY / "vbar")
 try:
     import numpy
-    import pandas  # noqa: F401, the tables of a run
+    import pandas
 except ImportError:
     numpy = None
 
@@ -190,7 +190,8 @@ class BoundRun(unittest.TestCase):
         from vbar.bound_flight import Flight
         flight = Flight(self.folder / "run")
         [instrument] = bound.measurements_of([flight])
-        ratio = bound.norm(flight, "sigma") / bound.bound_of(flight, instrument)
+        record = bound.assess(flight, instrument, [])
+        ratio = record.sigma_m / record.bound_as_stated_m
         settled = flight.time > flight.time[0] + 1200
         self.assertGreater(numpy.nanmin(ratio[settled]), 0.98)
         self.assertLess(numpy.nanmax(ratio[settled]), 1.05)
@@ -206,7 +207,7 @@ class BoundRun(unittest.TestCase):
         self.assertLess(numpy.abs(formed - used).mean(), 0.1 * used.mean())
 
     def test_page_of_a_run(self):
-        result = vbar("bound", self.folder / "run", "--budget")
+        result = vbar("bound", self.folder / "run", "--budget", "--records", self.folder / "records.csv")
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in result.stdout.splitlines() if line.startswith("|")]
         self.assertEqual(rows[2][0], "9")
@@ -214,6 +215,8 @@ class BoundRun(unittest.TestCase):
         shares = {row[0]: float(row[1]) for row in rows[5:]}
         self.assertLess(shares["antenna offsets"], 0.5)
         self.assertEqual(shares["burns"], 1.0)
+        records = pandas.read_csv(self.folder / "records.csv")
+        self.assertAlmostEqual(records.error_m.iloc[-1], float(rows[2][5]), delta=0.01 * records.error_m.iloc[-1])
 
     def test_answers_to_invalid_input(self):
         for arguments, sentence in ((["no_folder"], "is not a folder"), ([self.folder], "truth.csv"),
