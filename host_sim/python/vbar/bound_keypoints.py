@@ -41,7 +41,7 @@ class RigidBody:
     def __init__(self, first, times, rates, inertia, psd):
         self.places = range(first, first + 6)
         self.times, self.rates, self.inertia, self.psd = times, rates, inertia, psd
-        self.sigma = 1.0
+        self.sigma = 1.0  # factor on all standard deviations
 
     def sigmas(self):
         return self.sigma * numpy.array([ATTITUDE_SIGMA] * 3 + [RATE_SIGMA] * 3)
@@ -56,7 +56,7 @@ class RigidBody:
             partials = partials + term
         place = slice(self.places[0], self.places[0] + 6)
         transition[place, place] = partials
-        noise[place, place] = self.psd * numpy.kron([[dt**3 / 3, dt**2 / 2], [dt**2 / 2, dt]], numpy.eye(3))
+        noise[place, place] = self.sigma**2 * self.psd * numpy.kron([[dt**3 / 3, dt**2 / 2], [dt**2 / 2, dt]], numpy.eye(3))
 
 
 class Keypoints:
