@@ -101,12 +101,13 @@ def bound_of(flight, measurements, known=(), flown=False):
 def measurements_of(flights):
     """Those of the source that determines the orbit of these runs."""
     run = flights[0].run
-    if "gnss" in run.tables and (run.gnss.fixed > 0).any():
-        return CarrierPhases.of(flights)
-    kind = next((kind for table, kind in (("poses", Keypoints), ("images", Bearings)) if table in run.tables), None)
-    if kind is None:
-        raise BoundError(f"{run.folder} has neither images nor poses nor fixed integers of carrier phase")
-    return kind.of(flights)
+    used = {"gnss": lambda table: (table.fixed > 0).any(), "poses": lambda table: (table.fate == "keypoints").any(),
+            "images": lambda table: (table.fate == "filter").any()}
+    kinds = {"gnss": CarrierPhases, "poses": Keypoints, "images": Bearings}
+    sources = [table for table in kinds if table in run.tables and used[table](run[table])]
+    if len(sources) != 1:
+        raise BoundError(f"{run.folder}: navigation used {' and '.join(sources) or 'none'} of {', '.join(kinds)}; the bound is of one of them")
+    return kinds[sources[0]].of(flights)
 
 
 def assess(flight, instrument, known):
@@ -187,6 +188,8 @@ def main(arguments=None):
         if options.records:
             pandas.concat(records).to_csv(options.records, index=False)
         rows = efficiency(flights, records)
+        if not rows:
+            raise BoundError(f"{flights[0].run.folder}: no waypoint was reached")
         print(table(HEADER,
                     [[str(index), f"{values[0]:.1f}", *(f"{value:.3g}" for value in values[1:5]), *(f"{value:.2f}" for value in values[5:])]
                      for index, values in rows.items()]))

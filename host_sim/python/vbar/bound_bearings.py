@@ -94,8 +94,8 @@ class Bearings:
         return {"bearing bias": GaussMarkov(first, 2, self.bias_sigma, BIAS_TIME_S),
                 "brightness offset": GaussMarkov(first + 2, 1, self.sun_sigma, SUN_TIME_S),
                 "earthlight": GaussMarkov(first + 3, 1, *EARTHLIGHT),
-                "centroid": GaussMarkov(first + 4, 2, max((self.shares[0] * self.length)**0.5, 1e-4), self.times[0]),
-                "centroid wander": GaussMarkov(first + 6, 2, max((self.shares[1] * self.length)**0.5, 1e-4), self.times[1])}
+                "centroid, short": GaussMarkov(first + 4, 2, max((self.shares[0] * self.length)**0.5, 1e-4), self.times[0]),
+                "centroid, long": GaussMarkov(first + 6, 2, max((self.shares[1] * self.length)**0.5, 1e-4), self.times[1])}
 
     def empirical_acceleration(self, first):
         return None

@@ -24,6 +24,8 @@ def correlation(series, period):
             products[k] += values[early] @ values[late]
             weights[k] += len(early)
     seen = weights > 0
+    if not seen.any():
+        return (0.0, 0.0), (period, 2 * period)
     target, weight = products[seen] / weights[seen], numpy.sqrt(weights[seen])
     best = (numpy.inf, (0.0, 0.0), (period, period))
     for k, fast in enumerate(TIMES):

@@ -68,6 +68,7 @@ class BoundFilter(unittest.TestCase):
         shares, times = correlation(series, 5.0)
         self.assertAlmostEqual(sum(shares), 0.5, delta=0.05)
         self.assertAlmostEqual(numpy.average(times, weights=shares), 100.0, delta=30.0)
+        self.assertEqual(correlation([(numpy.zeros(1), numpy.ones(1))], 5.0)[0], (0.0, 0.0))  # nothing to correlate: white
 
     def test_noise_of_an_angle_and_a_length(self):
         """Chi-square of some 10,000 draws where either prevails: both variances to 1.4 %, 1 sigma."""
@@ -219,8 +220,10 @@ class BoundRun(unittest.TestCase):
         self.assertAlmostEqual(records.error_m.iloc[-1], float(rows[2][5]), delta=0.01 * records.error_m.iloc[-1])
 
     def test_answers_to_invalid_input(self):
+        fly(self.folder / "short", "mission.duration_h=0.01", mission=EXPERIMENT3)
         for arguments, sentence in ((["no_folder"], "is not a folder"), ([self.folder], "truth.csv"),
-                                    ([self.folder / "run", "--known", "wind"], "--known wind: accepted are burns, ")):
+                                    ([self.folder / "run", "--known", "wind"], "--known wind: accepted are burns, "),
+                                    ([self.folder / "short"], "navigation used none of gnss, poses, images")):
             result = vbar("bound", *arguments)
             self.assertEqual(result.returncode, 2)
             self.assertIn(sentence, result.stderr)
