@@ -42,7 +42,7 @@ if(VBAR_TARGET STREQUAL "host")
   install(DIRECTORY ${PROJECT_BINARY_DIR}/python ${PROJECT_SOURCE_DIR}/host_sim/python/notebooks DESTINATION ${CMAKE_INSTALL_DATADIR}/vbar
     PATTERN __pycache__ EXCLUDE)
   install(FILES ${PROJECT_SOURCE_DIR}/host_sim/python/vbar_run.m DESTINATION ${CMAKE_INSTALL_DATADIR}/vbar/octave)
-  install(PROGRAMS ${PROJECT_BINARY_DIR}/vbar_export ${PROJECT_BINARY_DIR}/vbar_watch
+  install(PROGRAMS ${PROJECT_BINARY_DIR}/vbar_bound ${PROJECT_BINARY_DIR}/vbar_export ${PROJECT_BINARY_DIR}/vbar_watch
     ${PROJECT_BINARY_DIR}/vbar_xtce DESTINATION ${CMAKE_INSTALL_BINDIR})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/toolchains/package/article DESTINATION ${CMAKE_INSTALL_DATADIR}/vbar/toolchains/package)
   configure_package_config_file(${PROJECT_SOURCE_DIR}/toolchains/package/vbarConfig.cmake.in vbarConfig.cmake

@@ -16,3 +16,13 @@ def program():
     if not found:
         raise FileNotFoundError("the program vbar is neither beside this package nor in PATH, and VBAR does not name it")
     return found
+
+
+def data_folder():
+    """The folder of data that belongs to this package: of the sources, or installed."""
+    here = pathlib.Path(__file__).resolve()
+    for parent in here.parents:
+        for folder in (parent / "data", parent):
+            if (folder / "gps").is_dir() and (folder / "bodies").is_dir():
+                return folder
+    raise FileNotFoundError(f"no folder data with gps and bodies above {here.parent}")
