@@ -24,10 +24,10 @@ DURATION = "mission.duration_h=0.1"
 
 
 @contextlib.contextmanager
-def watched(folder, seconds):
+def watched(folder, seconds, option="--view"):
     """A run that takes about so many seconds, and the address of its page."""
     settings = overrides(DURATION, "clock.mode=real_time", f"clock.speed_factor={360 / seconds}", "clock.compute_budget_s=60")
-    run = start("run", EXPERIMENT3, "--out", folder, "--view", *settings)
+    run = start("run", EXPERIMENT3, "--out", folder, option, *settings)
     viewers = []
     try:
         for line in run.stderr:
@@ -53,6 +53,30 @@ def get(address, path, **headers):
     connection = http.client.HTTPConnection(address.hostname, address.port, timeout=LIMIT_S)
     connection.request("GET", path, headers={name.replace("_", "-"): value for name, value in headers.items()})
     return connection, connection.getresponse()
+
+
+def post(address, path, body, **headers):
+    """(status, text) of the answer."""
+    connection = http.client.HTTPConnection(address.hostname, address.port, timeout=LIMIT_S)
+    connection.request("POST", address.path + path, body=body, headers=headers)
+    answer = connection.getresponse()
+    text = answer.read().decode()
+    connection.close()
+    return answer.status, text
+
+
+def rows_of(folder):
+    """The rows of truth that are in the folder."""
+    for file in folder.glob("truth.csv*"):
+        return len(file.read_text().splitlines()) - 1
+    return 0
+
+
+def wait_for_rows(folder, count):
+    deadline = time.monotonic() + LIMIT_S
+    while rows_of(folder) < count:
+        assert time.monotonic() < deadline, f"{rows_of(folder)} of {count} rows"
+        time.sleep(0.05)
 
 
 def events(address, counts=""):
@@ -131,10 +155,98 @@ class Live(unittest.TestCase):
             rows = [line for name, value in events(address, "truth=30") if name == "rows" for line in value["truth"]["rows"]]
         self.assertEqual(rows, (self.folder / "counted" / "truth.csv").read_text().splitlines()[31:])
 
+    def test_pace_changes_no_bit(self):
+        """Paused, stepped, at other speeds: the run of 100 h of wall-clock time ends by request alone, with the bits of the other."""
+        with watched(self.folder / "paced", 3.6e5, "--view-control") as (run, address):
+            viewer = events(address)
+            self.assertEqual(next(viewer), ("pace", {"paused": False, "speed": 1e-3}))
+            for request in ({"do": "pause"}, {"speed": 1e6}):
+                self.assertEqual(post(address, "pace", json.dumps(request))[0], 200)
+            wait_for_rows(self.folder / "paced", 1)
+            for count in (2, 3, 4):
+                before = rows_of(self.folder / "paced")
+                self.assertEqual(post(address, "pace", '{"do": "step"}'), (200, json.dumps({"paused": True, "speed": 1e6})))
+                wait_for_rows(self.folder / "paced", before + 1)
+                self.assertEqual(rows_of(self.folder / "paced"), count)
+            self.assertIsNone(run.poll())
+            self.assertEqual(post(address, "pace", '{"do": "go_on"}')[0], 200)
+            run.wait(timeout=LIMIT_S)
+            self.assertEqual([value for name, value in viewer if name == "pace"][-1], {"paused": False, "speed": 1e6})
+            self.assertEqual(post(address, "pace", '{"do": "pause"}'), (409, "the run has ended\n"))
+        self.assertEqual(hashes(summary_of(self.folder / "paced")), hashes(summary_of(self.folder / "alone")))
+        self.assertEqual((self.folder / "paced" / "truth.csv").read_bytes(), (self.folder / "alone" / "truth.csv").read_bytes())
+
+    def test_which_pace_is_refused(self):
+        with watched(self.folder / "uncontrolled", 4) as (_, address):
+            self.assertEqual(post(address, "pace", '{"do": "pause"}')[0], 404)
+        with watched(self.folder / "controlled", 3.6e5, "--view-control") as (run, address):
+            for body, sentence in (("[]", "a JSON object"), ("{", "a JSON object"), ("[" * 999, "a JSON object"), ('{"do": "stop"}', '"go_on"'),
+                                   ('{"speed": 0}', "0.001 to 1e+06"), ('{"speed": NaN}', "0.001"), ('{"speed": "9"}', "0.001"), ('{"speed": true}', "0.001"),
+                                   ('{"do": "step", "speed": 1}', "one of the keys"), ("{}", "one of the keys"), (" " * 2000, "0 to 1000")):
+                status, text = post(address, "pace", body)
+                self.assertEqual(status, 400, body[:20])
+                self.assertIn(sentence, text)
+            for header in ({"Host": "attacker.example"}, {"Origin": "http://attacker.example"}, {"Origin": "null"}):
+                self.assertEqual(post(address, "pace", '{"speed": 1000000}', **header)[0], 403)
+            self.assertEqual(post(address._replace(path="/" + "x" * 22 + "/"), "pace", '{"speed": 1000000}')[0], 404)
+            self.assertIsNone(run.poll())
+            run.send_signal(signal.SIGINT)
+        result = vbar("run", EXPERIMENT3, "--out", self.folder / "lock_step", "--view-control")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn('--view-control: clock.mode: found "lock_step"; accepted: "real_time"', result.stderr)
+        self.assertFalse((self.folder / "lock_step").exists())
+
     def test_no_run(self):
         result = vbar("watch", self.folder / "nothing")
         self.assertEqual(result.returncode, 2)
-        self.assertIn("not a run folder", result.stderr)
+        self.assertIn("not a run folder, nor that of a campaign", result.stderr)
+
+
+CAMPAIGN = """[campaign]
+name = "short"
+description = "</title><script>document.title='x'</script>"
+mission = "{mission}"
+seeds = "1..2"
+set = ["mission.duration_h=0.02"]
+"""
+
+
+class LiveCampaign(unittest.TestCase):
+    def test_the_page_follows_the_campaign(self):
+        """The page of a campaign of which one case is flown states that, and is the report once the other is, too."""
+        with scratch() as folder:
+            file, campaign = folder / "campaign.toml", folder / "campaign"
+            file.write_text(CAMPAIGN.format(mission=EXPERIMENT3))
+            self.assertEqual(vbar("campaign", "run", file, "--out", campaign, "--cases", "0").returncode, 75)
+            viewer = start("campaign", "status", campaign, "--view")
+            try:
+                address = urllib.parse.urlsplit(re.fullmatch(r"watch   (\S+)\n", viewer.stderr.readline())[1])
+
+                def page():
+                    connection, answer = get(address, address.path)
+                    text = answer.read().decode()
+                    connection.close()
+                    return answer, text
+                answer, text = page()
+                self.assertEqual((answer.status, answer.headers["Refresh"]), (200, "5"))
+                self.assertRegex(text, "2 cases: (1 not_begun, 1 complete|1 complete, 1 not_begun)")
+                self.assertNotIn("<script", text)
+                self.assertIn("default-src 'none'", answer.headers["Content-Security-Policy"])
+                self.assertEqual(vbar("campaign", "run", campaign).returncode, 0)
+                deadline = time.monotonic() + LIMIT_S
+                while "2 cases: 2 complete" not in text and time.monotonic() < deadline:
+                    time.sleep(0.5)
+                    answer, text = page()
+                self.assertIn("2 cases: 2 complete", text)
+                self.assertIsNone(answer.headers["Refresh"])
+                self.assertIn((campaign / "campaign.html").read_text().split("<main>\n")[1], text)
+                for path, headers, status in (("/", {}, 404), (address.path + "events", {}, 404), (address.path, {"Host": "attacker.example"}, 403)):
+                    connection, answer = get(address, path, **headers)
+                    self.assertEqual(answer.status, status)
+                    connection.close()
+            finally:
+                viewer.terminate()
+                viewer.communicate(timeout=LIMIT_S)
 
 
 class LiveInBrowser(unittest.TestCase):
