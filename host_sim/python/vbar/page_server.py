@@ -39,7 +39,8 @@ class Handler(http.server.BaseHTTPRequestHandler):
         """Whether the request is for this address and, if a page made it, from this address."""
         hosts = {f"{name}:{self.server.server_address[1]}" for name in ("127.0.0.1", "localhost")}
         origin = self.headers.get("Origin")
-        return self.headers.get("Host") in hosts and (origin is None or origin.removeprefix("http://") in hosts)
+        is_known = origin is None or origin.removeprefix("http://") in hosts or origin in self.server.origins
+        return self.headers.get("Host") in hosts and is_known
 
     def answer(self, method):
         self.connection.settimeout(STALL_S)
@@ -82,8 +83,9 @@ class Handler(http.server.BaseHTTPRequestHandler):
 class Server(http.server.ThreadingHTTPServer):
     daemon_threads = True
 
-    def __init__(self, site, port):
+    def __init__(self, site, port, origins=()):
         super().__init__(("127.0.0.1", port), Handler)
+        self.origins = origins
         self.site, self.token, self.is_over = site, secrets.token_urlsafe(16), threading.Event()
 
     @property

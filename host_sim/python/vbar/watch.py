@@ -3,103 +3,25 @@
 A process of its own reads the tables as they grow: a viewer cannot delay the run, or change a bit of it. The address has a token;
 requests of another Host or from pages of another Origin are refused. GET TOKEN/ is the page with all rows until now, TOKEN/events the rows that
 follow as server-sent events, from the counts of rows that the page has. Of a run with --view-control the page changes the pace by POST TOKEN/pace.
+TOKEN/foxglove is the run by Foxglove's WebSocket protocol.
 """
 import argparse
 import json
 import os
 import pathlib
 import signal
-import subprocess
 import sys
-import tempfile
 import threading
 import time
 
+from vbar import foxglove
 from vbar.page_server import Refusal, Server
-from vbar.programs import program
 from vbar.watched_campaign import CampaignSite
+from vbar.watched_run import Reader, WatchedRun
 
-PAGE_S = 2.0             # age of a page that is served again
 PERIOD_S = 0.5           # between two looks at the files
-MOST_LINES = 2000        # of a table in one event
 LAST_LOOK_S = 30.0       # the page is served so long after the run has ended
 REQUESTS = 3             # descriptor of the pipe to the run
-
-
-class WatchedRun:
-    """A run folder that grows."""
-
-    def __init__(self, folder):
-        self.folder = pathlib.Path(folder)
-        self.lock, self.made, self.made_s = threading.Lock(), "", -PAGE_S
-
-    def files(self):
-        """{table: file}; a table that is complete has a file without .part."""
-        found = {}
-        for end in (".csv.part", ".csv"):
-            for file in self.folder.glob(f"*{end}"):
-                found[file.name.removesuffix(end)] = file
-        return found
-
-    def has_ended(self):
-        return (self.folder / "truth.csv").exists() and not any(self.folder.glob("*.csv.part"))
-
-    def page(self):
-        """The page of all rows until now, made by vbar view; viewers that come together have the same."""
-        with self.lock:
-            if time.monotonic() - self.made_s > PAGE_S:
-                self.made, self.made_s = self._make(), time.monotonic()
-            return self.made
-
-    def _make(self):
-        with tempfile.TemporaryDirectory(prefix="vbar-watch-") as scratch:
-            file = pathlib.Path(scratch) / "view.html"
-            done = subprocess.run([program(), "view", str(self.folder), "--out", str(file)], capture_output=True, text=True)
-            if done.returncode != 0:
-                raise RuntimeError(done.stderr.strip())
-            return file.read_text(encoding="utf-8")
-
-
-class Reader:
-    """The rows of a run behind those that a viewer has."""
-
-    def __init__(self, run, counts):
-        self.run, self.counts, self.open = run, counts, {}
-
-    def new_rows(self):
-        """{table: {"columns": names, "rows": lines}} of whole lines since the last call, at most MOST_LINES of each table."""
-        news = {}
-        for table, file in self.run.files().items():
-            try:
-                if table not in self.open:
-                    stream = open(file, encoding="utf-8", newline="\n")
-                    self.open[table] = [stream, "", None]
-                    for _ in range(1 + self.counts.get(table, 0)):
-                        self._line(table)
-                lines = []
-                while len(lines) < MOST_LINES and (line := self._line(table)) is not None:
-                    lines.append(line)
-            except OSError:
-                continue  # renamed at this moment: its other name is there next time
-            if lines:
-                news[table] = {"columns": self.open[table][2], "rows": lines}
-        return news
-
-    def _line(self, table):
-        """The next whole line; the first one is that of the columns. None if there is none yet."""
-        stream, rest, columns = self.open[table]
-        rest += stream.readline()
-        if not rest.endswith("\n"):
-            self.open[table][1] = rest
-            return None
-        self.open[table][1] = ""
-        if columns is None:
-            self.open[table][2] = rest.rstrip("\n").split(",")
-        return rest.rstrip("\n")
-
-    def close(self):
-        for stream, _, _ in self.open.values():
-            stream.close()
 
 
 class RunSite:
@@ -107,7 +29,8 @@ class RunSite:
 
     def __init__(self, run, pace=None):
         self.run, self.pace = run, pace
-        self.routes = {("GET", ""): self.page, ("GET", "events"): self.events}
+        feed = foxglove.Feed(run)
+        self.routes = {("GET", ""): self.page, ("GET", "events"): self.events, ("GET", "foxglove"): lambda viewer, _: foxglove.serve(viewer, feed)}
         if pace:
             self.routes["POST", "pace"] = self.change_pace
 
@@ -198,6 +121,7 @@ def main(arguments=None):
     parser = argparse.ArgumentParser(prog="vbar watch", description="serve the page of a run or a campaign on 127.0.0.1 while it goes on")
     parser.add_argument("run", type=pathlib.Path, help="folder of a run or a campaign")
     parser.add_argument("--port", type=int, default=0, help="by default any free one")
+    parser.add_argument("--origin", action="append", default=[], metavar="URL", help="a site whose pages may connect too, as https://app.foxglove.dev")
     parser.add_argument("--of-run", type=int, metavar="PID", help="of the run that started this program: it ends soon after that")
     parser.add_argument("--control", type=float, metavar="SPEED", help=argparse.SUPPRESS)  # of a run that takes requests from the pipe
     options = parser.parse_args(arguments)
@@ -209,7 +133,7 @@ def main(arguments=None):
         if options.of_run is None and not site.run.files():
             parser.error(f"{options.run}: neither tables nor a campaign.json: not a run folder, nor that of a campaign")
     try:
-        server = Server(site, options.port)
+        server = Server(site, options.port, options.origin)
     except (OSError, OverflowError) as error:
         parser.error(f"--port {options.port}: {error}")
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))

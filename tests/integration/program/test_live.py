@@ -4,8 +4,10 @@ import http.client
 import json
 import os
 import re
+import shutil
 import signal
 import socket
+import subprocess
 import sys
 import threading
 import time
@@ -13,12 +15,17 @@ import unittest
 import urllib.parse
 
 from test_view import need_page
-from vbar_program import COMPLETE, SOURCE, children_of, fly, hashes, main, overrides, scratch, start, summary_of, vbar
+from vbar_program import BINARY, COMPLETE, SOURCE, children_of, fly, hashes, main, overrides, scratch, start, summary_of, vbar
 
 sys.path.insert(0, str(SOURCE / "tests" / "integration" / "view"))
 import browser  # noqa: E402
+sys.path.insert(0, str(BINARY / "python"))
+from vbar import foxglove, websocket  # noqa: E402
+from vbar.watched_run import WatchedRun  # noqa: E402
 
 EXPERIMENT3 = SOURCE / "missions" / "experiment3.toml"
+PEERS = SOURCE / "tests" / "peers" / "mcap"
+NODE_MODULES = SOURCE / "build" / "peers" / "mcap" / "node_modules"
 LIMIT_S = 60
 DURATION = "mission.duration_h=0.1"
 
@@ -200,6 +207,90 @@ class Live(unittest.TestCase):
         result = vbar("watch", self.folder / "nothing")
         self.assertEqual(result.returncode, 2)
         self.assertIn("not a run folder, nor that of a campaign", result.stderr)
+
+
+class LiveFoxglove(unittest.TestCase):
+    """The run by Foxglove's WebSocket protocol."""
+
+    def node(self, script, *arguments):
+        node = shutil.which("node") or shutil.which("nodejs")
+        if not node or not (NODE_MODULES / "ws").is_dir():
+            self.skipTest(f"{NODE_MODULES} or node is missing: run tests/peers/wire_formats/install_npm.sh")
+        result = subprocess.run([node, PEERS / script, NODE_MODULES, *map(str, arguments)], capture_output=True, text=True, timeout=LIMIT_S)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return json.loads(result.stdout)
+
+    def test_its_own_client_reads_the_run(self):
+        """@foxglove/ws-protocol while the run goes on: every row of the tables, with the bits of the files, in the channels of the MCAP file."""
+        with scratch() as folder:
+            fly(folder / "alone", DURATION, mission=EXPERIMENT3)
+            truth = [line.split(",") for line in (folder / "alone" / "truth.csv").read_text().splitlines()]
+            with watched(folder / "run", 4) as (_, address):
+                read = self.node("subscribe.cjs", f"ws://{address.netloc}{address.path}foxglove", f"/tables/truth={len(truth) - 1}", f"/tf={2 * len(truth) - 2}")
+            self.assertEqual(vbar("export", folder / "run", "--mcap", folder / "run.mcap").returncode, 0)
+            file = self.node("read_mcap.cjs", folder / "run.mcap")["topics"]
+            self.assertEqual(hashes(summary_of(folder / "run")), hashes(summary_of(folder / "alone")))
+        self.assertEqual(read["info"]["op"], "serverInfo")
+        for topic, schema in read["channels"].items():
+            self.assertEqual(schema, file[topic]["schema"])
+        rows, frames = read["topics"]["/tables/truth"], read["topics"]["/tf"]
+        self.assertEqual((rows["count"], frames["count"]), (len(truth) - 1, 2 * len(truth) - 2))
+        for message, row in ((rows["first"], truth[1]), (rows["last"], truth[-1])):
+            self.assertEqual([message[name] for name in truth[0]], list(map(float, row)))
+            self.assertEqual(int(message["time_ns"]), 10**9 * int(message["timestamp"]["seconds"]) + message["timestamp"]["nanos"])
+        for one in ("first", "last"):
+            self.assertEqual({name: frames[one][name] for name in ("translation", "rotation", "child_frame_id")},
+                             {name: file["/tf"][one][name] for name in ("translation", "rotation", "child_frame_id")})
+
+    def test_frames_of_the_standard(self):
+        """RFC 6455, sections 1.3 and 5.7."""
+        self.assertEqual(websocket.accept_key("dGhlIHNhbXBsZSBub25jZQ=="), "s3pPLMBiTxaQ9kYGzzhZRbK+xOo=")
+        masked = bytearray.fromhex("818537fa213d7f9f4d5158")
+        self.assertIsNone(websocket.take_frame(masked[:10]))
+        self.assertEqual(websocket.take_frame(masked), (True, websocket.TEXT, b"Hello"))
+        self.assertEqual(masked, b"")
+        self.assertEqual(websocket.frame(websocket.TEXT, b"Hello").hex(), "810548656c6c6f")
+        self.assertEqual(websocket.frame(websocket.BINARY, bytes(256))[:4].hex(), "827e0100")
+        self.assertEqual(websocket.frame(websocket.BINARY, bytes(65536))[:10].hex(), "827f0000000000010000")
+        for bad, code in (("810548656c6c6f", 1002), ("c18537fa213d7f9f4d5158", 1002), ("82ff0000000100000000", 1009)):
+            with self.assertRaises(websocket.Closed) as raised:
+                websocket.take_frame(bytearray.fromhex(bad))
+            self.assertEqual(raised.exception.args[0], code)
+
+    def test_a_table_whose_cells_become_text(self):
+        """Its channel is replaced by one whose message holds all rows."""
+        with scratch() as folder:
+            fly(folder / "run", "mission.duration_h=0.02", mission=EXPERIMENT3)
+            table = folder / "run" / "growing.csv"
+            table.write_text("time_s,value\n1,2.5\n")
+            feed = foxglove.Feed(WatchedRun(folder / "run"))
+
+            def channel():
+                return next(number for number, advert in feed.renew().items() if advert["topic"] == "/tables/growing")
+            before = channel()
+            self.assertEqual(len(feed.messages[before]), 1)
+            table.write_text("time_s,value\n1,2.5\n2,none\n")
+            feed.renewed_s -= 1.0
+            after = channel()
+            self.assertNotEqual(before, after)
+            self.assertNotIn(before, feed.messages)
+            self.assertEqual([b"2.5" in message or b"none" in message for _, message in feed.messages[after]], [True, True])
+
+    def test_who_is_refused(self):
+        with watched(self.enterContext(scratch()) / "run", 4) as (_, address):
+            def answer(path=address.path, **headers):
+                upgrade = {"Upgrade": "websocket", "Connection": "Upgrade", "Sec-WebSocket-Version": "13", "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ==",
+                           "Sec-WebSocket-Protocol": "foxglove.websocket.v1"} | headers
+                connection = http.client.HTTPConnection(address.hostname, address.port, timeout=LIMIT_S)
+                connection.request("GET", f"{path}foxglove", headers={name: value for name, value in upgrade.items() if value})
+                status = connection.getresponse().status
+                connection.close()
+                return status
+            self.assertEqual(answer(), 101)
+            self.assertEqual(answer(Origin=f"http://{address.netloc}"), 101)
+            for headers, status in (({"Origin": "http://attacker.example"}, 403), ({"Host": "attacker.example"}, 403), ({"path": "/" + "x" * 22 + "/"}, 404),
+                                    ({"Sec-WebSocket-Protocol": "other"}, 400), ({"Sec-WebSocket-Key": None}, 400), ({"Upgrade": None}, 400)):
+                self.assertEqual(answer(**headers), status, headers)
 
 
 CAMPAIGN = """[campaign]
