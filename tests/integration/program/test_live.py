@@ -381,5 +381,33 @@ class LiveInBrowser(unittest.TestCase):
                 viewer.communicate(timeout=LIMIT_S)
 
 
+class LiveControlInBrowser(unittest.TestCase):
+    def test_the_page_sets_the_pace(self):
+        """Its buttons pause a run, let one step pass, and end it at another speed."""
+        if not browser.program():
+            self.skipTest(f"none of {', '.join(browser.PROGRAMS)} is installed")
+        with scratch() as folder, watched(folder / "run", 3.6e5, "--view-control") as (run, address), browser.browser() as page:
+            wait_for_rows(folder / "run", 1)
+            connection, answer = get(address, address.path)
+            connection.close()
+            if answer.status == 503:
+                self.skipTest("this build has no page")
+            page.show()
+            page.open(address.geturl())
+            label = """new Promise((done) => { const look = () => { const [hold] = document.querySelectorAll('.pace:not([hidden]) button');
+                hold?.textContent === %r ? done(document.querySelector('.pace select').value) : setTimeout(look, 100); }; look(); })"""
+            self.assertEqual(page.evaluate(label % "Pause"), "0.001")
+            page.evaluate("document.querySelector('.pace button').click()")
+            page.evaluate(label % "Go on")
+            for count in (2, 3):
+                page.evaluate("document.querySelectorAll('.pace button')[1].click()")
+                wait_for_rows(folder / "run", count)
+            page.evaluate("{ const speed = document.querySelector('.pace select'); speed.value = '10000'; speed.dispatchEvent(new Event('change')); }")
+            page.evaluate("document.querySelector('.pace button').click()")
+            run.wait(timeout=LIMIT_S)
+            self.assertIn(run.returncode, COMPLETE)
+            self.assertEqual(page.errors, [])
+
+
 if __name__ == "__main__":
     main()
