@@ -184,7 +184,7 @@ report::Section miss_section(const Content& content) {
 
 namespace {
 
-constexpr std::size_t kMaxRows = 30, kMaxPlots = 6;
+constexpr std::size_t kMaxRows = 30, kMaxPlots = 6, kMaxOtherPlots = 24;
 
 Plot scatter(const Dependence& found) {
   Plot plot;
@@ -240,21 +240,29 @@ report::Section driver_section(const Content& content) {
   const std::vector<Dependence> found = dependences(inputs, outputs);
   if (found.empty()) return {};
   std::vector<std::vector<std::string>> rows;
-  std::vector<Plot> plots;
+  std::vector<Plot> plots, others_plotted;
   for (const Dependence& one : found) {
+    const bool is_main = one.is_significant() && plots.size() < kMaxPlots;
+    if (!is_main && one.response->quantity != nullptr && others_plotted.size() < kMaxOtherPlots)
+      others_plotted.push_back(scatter(one));
     if (!one.is_significant()) continue;
     if (rows.size() < kMaxRows)
       rows.push_back({one.driver->name, one.response->name, report::grouped(one.correlation.count),
                       report::fixed(one.correlation.rho, 3),
                       one.adjusted_p < 1e-4 ? "< 0.0001" : fmt::format("{:.4f}", one.adjusted_p)});
-    if (plots.size() < kMaxPlots && one.response->quantity != nullptr) plots.push_back(scatter(one));
+    if (is_main && one.response->quantity != nullptr) plots.push_back(scatter(one));
   }
   std::string body = notes(content.campaign);
   if (!rows.empty())
     body += report::table({{"key", false}, {"figure", false}, {"cases"}, {"ρ"}, {"p, corrected"}}, rows);
   body += paragraph("Without a significant correlation", without_effect(inputs, found));
   body += paragraph("Not ranked, as their values are constant or not numbers", others);
-  return {"What drives the figures", body + report::plot_rows(3, std::move(plots)), {"results.csv"}};
+  body += report::plot_rows(3, std::move(plots));
+  if (!others_plotted.empty())
+    body += fmt::format(
+        "<details><summary>Each other figure over each key, the strongest correlations first</summary>\n{}</details>\n",
+        report::plot_rows(3, std::move(others_plotted)));
+  return {"What drives the figures", body, {"results.csv"}};
 }
 
 }  // namespace vbar::campaign_report

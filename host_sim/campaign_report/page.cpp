@@ -169,11 +169,12 @@ Plot distribution_function(const Quantity& quantity, const std::vector<double>& 
 }
 
 std::string page_of(const Campaign& campaign, const std::string& folder_name,
-                    const std::vector<JudgedRequirement>& requirements) {
-  const Content content{campaign, quantities(campaign), folder_name, requirements};
+                    const std::vector<JudgedRequirement>& requirements, const std::vector<Flight>& flights) {
+  const Content content{campaign, quantities(campaign), folder_name, requirements, flights};
   std::vector<report::Section> sections;
-  for (auto* const section : {requirement_section, pass_rate_section, distribution_section, miss_section,
-                              consistency_section, driver_section, worst_section, failure_section, processor_section})
+  for (auto* const section :
+       {requirement_section, pass_rate_section, flight_section, distribution_section, miss_section, consistency_section,
+        driver_section, worst_section, failure_section, processor_section})
     sections.push_back(section(content));
   std::string body = overview(content) + report::contents(sections);
   for (const report::Section& section : sections) body += report::section_html(section);
@@ -188,7 +189,8 @@ WrittenPage write_page(const std::filesystem::path& folder) {
   const campaign_report::Campaign campaign = campaign_report::read_campaign(folder);
   const std::string name = campaign_report::name_of_folder(folder);
   WrittenPage written{folder / "campaign.html", campaign_report::judge_requirements(campaign, name)};
-  files::replace_text_file(written.page, campaign_report::page_of(campaign, name, written.requirements));
+  files::replace_text_file(written.page, campaign_report::page_of(campaign, name, written.requirements,
+                                                                  campaign_report::kept_flights(folder, campaign)));
   files::replace_text_file(folder / "campaign_results.json",
                            campaign_report::results_json(campaign, written.requirements));
   return written;

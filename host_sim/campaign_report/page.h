@@ -2,6 +2,7 @@
 // Cases and shares as text.
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -25,6 +26,17 @@ namespace vbar::campaign_report {
 /// values up to it).
 [[nodiscard]] std::vector<report::Point> distribution_steps(const std::vector<double>& sorted, std::size_t max_steps);
 
+// Flights of a campaign over each other.
+
+struct Flight {
+  std::uint64_t number = 0;                 ///< of its case
+  std::vector<report::Point> error, range;  ///< (hours, m): of the estimated relative position; true
+};
+
+/// The complete cases of which the folder keeps runs with tables, spread over all where they are more than 40. Throws
+/// std::runtime_error for a file that cannot be read.
+[[nodiscard]] std::vector<Flight> kept_flights(const std::filesystem::path& folder, const Campaign& campaign);
+
 // The parts of the page, in its order. A section without anything to show has no content.
 
 /// Confidence of all bounds on the page.
@@ -36,11 +48,13 @@ struct Content {
   std::vector<Quantity> quantities;
   std::string folder_name;  ///< folder of the campaign
   const std::vector<JudgedRequirement>& requirements;
+  const std::vector<Flight>& flights;
 };
 
 [[nodiscard]] std::string overview(const Content& content);  ///< as HTML
 [[nodiscard]] report::Section requirement_section(const Content& content);
 [[nodiscard]] report::Section pass_rate_section(const Content& content);
+[[nodiscard]] report::Section flight_section(const Content& content);
 [[nodiscard]] report::Section distribution_section(const Content& content);
 [[nodiscard]] report::Section miss_section(const Content& content);
 [[nodiscard]] report::Section consistency_section(const Content& content);
@@ -82,7 +96,8 @@ template <class Predicate>
 
 /// The page. `folder_name` stands in the commands that fly a case again.
 [[nodiscard]] std::string page_of(const Campaign& campaign, const std::string& folder_name,
-                                  const std::vector<JudgedRequirement>& requirements);
+                                  const std::vector<JudgedRequirement>& requirements,
+                                  const std::vector<Flight>& flights = {});
 
 }  // namespace vbar::campaign_report
 

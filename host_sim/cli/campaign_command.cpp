@@ -1,6 +1,7 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <thread>
 
@@ -14,6 +15,8 @@
 #include "host_sim/campaign_report/page.h"
 #include "host_sim/cli/build_info.h"
 #include "host_sim/cli/command_line.h"
+#include "host_sim/cli/viewer.h"
+#include "host_sim/files/own_program.h"
 #include "host_sim/simulation/exit_codes.h"
 #include "host_sim/simulation/run_control.h"
 
@@ -64,6 +67,12 @@ void add_run(CLI::App& campaign, int& exit_code, const campaign::CommandLine& co
   });
 }
 
+/// Becomes the program that serves the page of the campaign, until it is interrupted.
+int serve_status(const std::filesystem::path& root) {
+  campaign::Folder(root).require_campaign();
+  throw std::runtime_error(files::become(Viewer::program(), {root.string()}));
+}
+
 int status(const std::filesystem::path& root, bool watch) {
   const campaign::Folder folder(root);
   catch_stop_signals();
@@ -86,8 +95,12 @@ void add_status(CLI::App& campaign, int& exit_code) {
   const auto watch = std::make_shared<bool>(false);
   CLI::App* command = campaign.add_subcommand("status", "how a campaign stands");
   command->add_option("folder", *folder, kFolderHelp)->required();
-  command->add_flag("--watch", *watch, "print again every two seconds until every case has its result");
-  command->callback([=, &exit_code] { exit_code = status(*folder, *watch); });
+  const auto view = std::make_shared<bool>(false);
+  CLI::Option* const watch_flag =
+      command->add_flag("--watch", *watch, "print again every two seconds until every case has its result");
+  command->add_flag("--view", *view, "serve the page of the campaign on 127.0.0.1 while it is flown (vbar watch)")
+      ->excludes(watch_flag);
+  command->callback([=, &exit_code] { exit_code = *view ? serve_status(*folder) : status(*folder, *watch); });
 }
 
 int report(const std::filesystem::path& root) {

@@ -16,6 +16,7 @@ struct RunOptions {
   bool check = false;                  ///< only the mission file is read
   bool quiet = false;                  ///< nothing is printed but errors
   bool view = false;                   ///< vbar_watch serves the page of the run while it goes on
+  bool view_control = false;           ///< and may change the pace of the run
 };
 int run_command(const RunOptions& options);
 

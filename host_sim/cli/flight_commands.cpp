@@ -4,19 +4,16 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include <fmt/chrono.h>
 #include <fmt/core.h>
-#include <spawn.h>
-#include <unistd.h>
 
 #include "host_sim/cli/commands.h"
 #include "host_sim/cli/recorded_flight.h"
 #include "host_sim/cli/verdicts.h"
+#include "host_sim/cli/viewer.h"
 #include "host_sim/files/error_lines.h"
-#include "host_sim/files/own_program.h"
 #include "host_sim/installation/sensor_kinds.h"
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/mission/data_file.h"
@@ -34,39 +31,33 @@ using report::RunFolder;
 
 namespace {
 
-/// Starts the program that serves the page of a run: a process of its own, which reads the folder as it grows, so that
-/// no viewer can delay or change the run. It inherits no descriptor but the standard ones: the lock of the folder ends
-/// with the run.
-void start_viewer(const std::filesystem::path& program, const std::filesystem::path& run_folder) {
-  std::vector<std::string> words{program.string(), run_folder.string(), "--of-run", std::to_string(::getpid())};
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  ::posix_spawn_file_actions_init(&actions);
-  ::posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
-  pid_t ignored = 0;
-  const int error = ::posix_spawn(&ignored, program.c_str(), &actions, nullptr, arguments.data(), environ);
-  ::posix_spawn_file_actions_destroy(&actions);
-  if (error != 0)
-    files::print_error(
-        "vbar", fmt::format("{} cannot be started: {}", program.string(), std::generic_category().message(error)));
-}
-
-std::filesystem::path viewer_program() {
-  std::filesystem::path program = files::program_beside("watch");
-  if (program.empty()) throw Refused("--view: the program vbar_watch is not beside this one");
-  return program;
+/// The pace of a run is changed through its clock, which paces nothing in lock-step; hardware does not pause.
+void check_control(const mission::Mission& mission) {
+  if (mission.clock.mode != engine::ClockMode::kRealTime)
+    throw Refused(
+        "--view-control: clock.mode: found \"lock_step\"; accepted: \"real_time\", as by "
+        "--set clock.mode=real_time --set clock.speed_factor=100");
+  if (!mission.testbeds.empty())
+    throw Refused(
+        fmt::format("--view-control: found testbed.{}; accepted: a mission without a testbed, whose "
+                    "hardware would not pause",
+                    mission.testbeds.front().name));
 }
 
 }  // namespace
 
 int run_command(const RunOptions& options) {
-  const std::filesystem::path viewer = options.view ? viewer_program() : std::filesystem::path();
+  const bool is_viewed = options.view || options.view_control;
+  const std::filesystem::path viewer_program = is_viewed ? Viewer::program() : std::filesystem::path();
   const mission::Mission mission =
       sensors::load_mission(mission::find_mission(options.mission, sensors::installation()), options.overrides);
-  const FlightOrder order{mission, mission::whole_mission_text(mission.file),
-                          mission::with_absolute_files(options.overrides, mission), options.quiet};
+  std::optional<Viewer> viewer;
+  FlightOrder order{mission, mission::whole_mission_text(mission.file),
+                    mission::with_absolute_files(options.overrides, mission), options.quiet};
+  if (options.view_control) {
+    check_control(mission);
+    order.pace_requests = [&viewer] { return viewer->next_request(); };
+  }
   catch_stop_signals();
   const std::unique_ptr<AssembledMission> assembled = assemble(mission, !options.check);
   if (options.check) {
@@ -80,7 +71,9 @@ int run_command(const RunOptions& options) {
   RunFolder folder(options.out.empty() ? report::default_run_folder(mission.name, mission.seed) : options.out,
                    record.summary, options.force ? RunFolder::Existing::kReplace : RunFolder::Existing::kRefuse,
                    sensors::extensions());
-  if (!viewer.empty()) start_viewer(viewer, folder.path());
+  if (is_viewed)
+    viewer.emplace(viewer_program, folder.path(),
+                   options.view_control ? std::optional(mission.clock.speed_factor) : std::nullopt);
   const std::optional<std::string> trouble = fly_into(folder, order, *assembled, record);
   report_flight(folder.path(), folder.path(), order, record, trouble);
   if (!options.quiet) print_own_limits(folder.path());

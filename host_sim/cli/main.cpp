@@ -176,6 +176,8 @@ int execute(int argc, char** argv) {
   run_app->add_flag("--check", run.check, "check the mission file and fly nothing");
   run_app->add_flag("--quiet", run.quiet, kQuietHelp);
   run_app->add_flag("--view", run.view, "serve the page of the run on 127.0.0.1 while it goes on (vbar watch)");
+  run_app->add_flag("--view-control", run.view_control,
+                    "as --view, and the page may pause the run, step it and set its speed (clock.mode = real_time)");
   add_set(run_app, run.overrides);
   run_app->callback([&] {
     if (*seed_option) run.overrides.push_back("mission.seed=" + std::to_string(seed));

@@ -276,19 +276,35 @@ std::optional<std::string> fly(const FlightOrder& order, AssembledMission& assem
   PacketRecorders keepers(mission, folder.path(), order.check);
   const std::unique_ptr<pil::FlightComputer> flight_computer =
       connect_flight_computer(flying_spacecraft(mission), assembled.wired_receiver());
-  const auto wall = mission::make_wall_clock(mission, sensors::installation());
+  const auto own_wall = mission::make_wall_clock(mission, sensors::installation());
   ProgressLine progress(mission.duration, order.quiet);
   auto updated = std::chrono::steady_clock::now();
-  const auto after_step = [&](fsw::Duration simulated) {
-    progress.update(simulated);
-    if (std::chrono::steady_clock::now() - updated < kBetweenUpdates) return;
+  bool has_news = false;
+  const auto update = [&] {
+    if (!has_news || std::chrono::steady_clock::now() - updated < kBetweenUpdates) return;
     folder.update(record);
     updated = std::chrono::steady_clock::now();
+    has_news = false;
+  };
+  std::optional<engine::ControlledWallClock> controlled;
+  if (order.pace_requests) {
+    const auto requests = [&] {
+      update();  // the steps before a pause are seen in it
+      return order.pace_requests();
+    };
+    controlled.emplace(*own_wall, mission.clock.speed_factor, requests, stop_requested);
+  }
+  engine::WallClock& wall = controlled ? *controlled : *own_wall;
+  const auto after_step = [&](fsw::Duration simulated) {
+    progress.update(simulated);
+    if (controlled) controlled->step_has_passed(simulated);
+    has_news = true;
+    update();
   };
   std::optional<std::string> trouble;
   try {
-    const bool complete = assembled.fly(
-        {*flight_computer, *wall, keepers.observers(), after_step, stop_requested, folder.path()}, record);
+    const bool complete =
+        assembled.fly({*flight_computer, wall, keepers.observers(), after_step, stop_requested, folder.path()}, record);
     if (!complete) trouble = kInterruption;
     keepers.finish();
   } catch (const std::exception& error) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "host_sim/engine/controlled_wall_clock.h"
 #include "host_sim/mission/mission.h"
 #include "host_sim/report/provenance.h"
 #include "host_sim/report/run_folder.h"
@@ -57,8 +58,9 @@ struct FlightOrder {
   std::string mission_text;            ///< content of the copy in the run folder
   std::vector<std::string> overrides;  ///< "path=value", as given
   bool quiet = false;
-  std::string branch = {};       ///< text of kBranchCopy; empty: the run is no branch
-  twins::EventCheck check = {};  ///< check of the events of the packet log; may be empty
+  std::string branch = {};                                   ///< text of kBranchCopy; empty: the run is no branch
+  twins::EventCheck check = {};                              ///< check of the events of the packet log; may be empty
+  engine::ControlledWallClock::Requests pace_requests = {};  ///< may be empty
 };
 
 /// The mission with its sources started, if `start`: whatever cannot fly is refused before there is a run folder.

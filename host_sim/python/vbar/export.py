@@ -31,8 +31,11 @@ def main(arguments=None):
             for name, text in messages(run).items() if folder else ():
                 write(folder / name, text)
         if options.mcap:
-            from vbar import mcap_run
-            write(options.mcap, mcap_run.mcap_of(run))
+            from vbar import mcap_file
+            from vbar.run_channels import RunChannels
+            file = mcap_file.Writer("vbar")
+            RunChannels(run, file).add_new()
+            write(options.mcap, file.finish())
     except (RunError, OSError) as error:
         print(f"vbar export: {error}", file=sys.stderr)
         return 2

@@ -29,6 +29,12 @@ class RecordedRun:
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
+        self.read_summary()
+        self.tables = {path.stem: self._read(path) for path in sorted(self.folder.glob("*.csv"))}
+        if "truth" not in self.tables:
+            raise RunError(f"{self.folder}: no truth.csv: its mission has record.tables = false")
+
+    def read_summary(self):
         try:
             self.summary = json.loads((self.folder / "summary.json").read_text())
             epoch = self.summary["provenance"]["epoch_utc"]
@@ -36,9 +42,6 @@ class RecordedRun:
             raise RunError(f"{self.folder}: no summary.json with provenance.epoch_utc: not the folder of a run that has ended ({error})") from None
         self.name = self.summary.get("mission", self.folder.name)
         self.epoch = datetime.datetime.fromisoformat(epoch.removesuffix("Z"))
-        self.tables = {path.stem: self._read(path) for path in sorted(self.folder.glob("*.csv"))}
-        if "truth" not in self.tables:
-            raise RunError(f"{self.folder}: no truth.csv: its mission has record.tables = false")
 
     @staticmethod
     def _read(file):

@@ -189,7 +189,9 @@ class Drawing {
     for (const Tick& tick : ticks_of(x_, 70.0)) {
       const double x = x_.pixel_of_shown(tick.value);
       append(R"(<line class="grid" x1="{0:.1f}" x2="{0:.1f}" y1="{1:.1f}" y2="{2:.1f}"/>)", x, top_, y_.start);
-      append(R"(<text class="tick mid" x="{:.1f}" y="{:.1f}">{}</text>)", x, y_.start + 14.0, tick.text);
+      const double half = 0.5 * kCharacterWidth * static_cast<double>(tick.text.size());
+      append(R"(<text class="tick mid" x="{:.1f}" y="{:.1f}">{}</text>)", std::min(x, plot_.width - half),
+             y_.start + 14.0, tick.text);
     }
     for (const Tick& tick : ticks_of(y_, 34.0)) {
       const double y = y_.pixel_of_shown(tick.value);

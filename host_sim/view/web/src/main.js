@@ -2,7 +2,7 @@
 
 import { Cursor, Link, secondsOf } from './cursor.js';
 import { Motion, norm } from './frames.js';
-import { followRun } from './live.js';
+import { followRun, paceControl } from './live.js';
 import { Numbers, valuesAt } from './numbers.js';
 import { Picture } from './picture.js';
 import { selectedPlots, tabsOf } from './plot_tabs.js';
@@ -176,6 +176,8 @@ async function start() {
   cursor.set(secondsOf(link.get('t')) ?? cursor.start);
 
   const { head, speed } = headOf(runs, cursor, link);
+  const pace = paceControl(make, kSpeeds);
+  head.querySelector('.space').after(pace.element);
   const sceneElement = make('section', { class: 'scene' }), pictureElement = make('section', { class: 'picture' }), side = make('section', { class: 'side' });
   const bar = make('section', { class: 'timeBar' }), plotElement = make('section', { class: 'plotSection' });
   page.replaceChildren(head, make('div', { class: `upper${run.pictures.length ? ' withPicture' : ''}` }, sceneElement, pictureElement, side), bar, plotElement);
@@ -196,7 +198,7 @@ async function start() {
     timeBar.renew();
     scene?.rebuildPaths();
     choose(link.get('tab'));
-  });
+  }, pace.show);
   if (live) cursor.set(cursor.end);
 
   // For scripts and tests: the state of the page, the cells of the tables, the values shown.

@@ -278,6 +278,47 @@ TEST(Miss, IsFoundByItsThreeComponents) {
   EXPECT_EQ(found[0].errors_rtn_m[1][2], 7.0);
 }
 
+class KeptFlights : public report::test::ScratchFolder {
+ protected:
+  void keep(const std::string& folder, const std::string& truth, const std::string& estimate) const {
+    constexpr const char* kHead =
+        "time_s,relative_position_rtn_r_m,relative_position_rtn_t_m,relative_position_rtn_n_m\n";
+    std::filesystem::create_directories(scratch_ / folder);
+    write(scratch_ / folder / "truth.csv", kHead + truth);
+    if (!estimate.empty()) write(scratch_ / folder / "estimate.csv", kHead + estimate);
+  }
+};
+
+TEST_F(KeptFlights, AreThoseOfCompleteCasesWithTables) {
+  keep("runs/a", "3600,30,40,0\n7200,0,-12,5\n", "3600,33,40,4\n7200,,,\n7260,1,1,1\n");
+  keep("runs/b", "3600,6,0,8\n", "");
+  keep("runs/failed", "3600,1,0,0\n", "");
+  Campaign campaign;
+  for (const char* const folder : {"runs/a", "", "runs/b", "runs/failed", "runs/none"}) {
+    Case one;
+    one.number = campaign.cases.size();
+    one.state = one.number == 3 ? State::kFailed : State::kComplete;
+    one.folder = folder;
+    campaign.cases.push_back(one);
+  }
+  const std::vector<Flight> flights = kept_flights(scratch_, campaign);
+  ASSERT_EQ(flights.size(), 2U);
+  EXPECT_EQ(flights[0].number, 0U);
+  ASSERT_EQ(flights[0].range.size(), 2U);
+  EXPECT_EQ(flights[0].range[0].x, 1.0);
+  EXPECT_NEAR(flights[0].range[0].y, 50.0, 1e-13);
+  EXPECT_NEAR(flights[0].range[1].y, 13.0, 1e-14);
+  ASSERT_EQ(flights[0].error.size(), 1U) << "neither a row without an estimate nor one of another time";
+  EXPECT_NEAR(flights[0].error[0].y, 5.0, 1e-14);
+  EXPECT_EQ(flights[1].number, 2U);
+  EXPECT_TRUE(flights[1].error.empty());
+  EXPECT_NEAR(flights[1].range[0].y, 10.0, 1e-14);
+  const std::string html = page_of(campaign, "campaign", {}, flights);
+  EXPECT_THAT(html, HasSubstr("<h2>Flights over time</h2>"));
+  EXPECT_THAT(html, HasSubstr("median of the cases"));
+  EXPECT_THAT(page_of(campaign, "campaign", {}), Not(HasSubstr("Flights over time")));
+}
+
 }  // namespace
 
 }  // namespace vbar::campaign_report::test
