@@ -78,16 +78,17 @@ def criteria(root):
 
 
 def test_names(root):
-    """Names of ctest: those of GoogleTest from the sources, those of scripts from the lists of CMake."""
+    """(names of ctest, suites of GoogleTest): those of GoogleTest from the sources, those of scripts from the lists of CMake."""
     names = set()
     for path in (root / "tests").rglob("*.cpp"):
         names |= {f"{suite}.{name}" for suite, name in GTEST.findall(path.read_text(encoding="utf-8"))}
+    suites = {name.split(".")[0] for name in names}
     for path in (root / "tests").rglob("CMakeLists.txt"):
         text = re.sub(r"#.*", "", path.read_text(encoding="utf-8"))
         names |= set(re.findall(r"(?:NAME\s+|vbar_peer_test\()(\w+(?:\.\w+)?)(?=\s)", text))
         for prefix in set(re.findall(r"(?:NAME\s+|vbar_peer_test\()(\w+\.\w*)\$\{", text)):  # of a loop or function: with all its words
             names |= {prefix + word for word in re.findall(r"\b\w+\b", text)}
-    return names
+    return names, suites
 
 
 def verdict_of(criterion, rows):
@@ -195,7 +196,7 @@ class Known:
     """What requirements can name."""
 
     def __init__(self, root):
-        self.root, self.criteria, self.tests = root, criteria(root), test_names(root)
+        self.root, self.criteria, (self.tests, self.suites) = root, criteria(root), test_names(root)
         self.claims = [match.groupdict() for match in CLAIM.finditer((root / "docs/accuracy.md").read_text(encoding="utf-8"))]
         self.verification = json.loads((root / "docs/verification.json").read_text(encoding="utf-8"))
         self.rows = {row["name"]: row for row in self.verification["rows"]}
@@ -264,7 +265,7 @@ def page(known, subjects):
     for requirement in every:
         for name in requirement.tests + requirement.tests_of_claims():
             by_test[name.split(".")[0]].append(requirement.id)
-    lines += ["Test suites:", ""]
+    lines += [f"Test suites; {len(known.suites & by_test.keys())} of {len(known.suites)} suites of GoogleTest are evidence of a requirement, the others test details:", ""]
     lines += table(["suite", "requirements"], [[f"`{suite}`", ", ".join(dict.fromkeys(ids))] for suite, ids in sorted(by_test.items())])
     return "\n".join(lines)
 
