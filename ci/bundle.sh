@@ -69,6 +69,7 @@ while read -r file; do
   cp -Lf "/usr/share/doc/$package/copyright" "$bundle/share/doc/$package.copyright"
 done < "$scratch/libraries"
 [[ -x $lib/ld-linux-x86-64.so.2 ]]
+ci/sbom.py "${programs[@]}" > "$bundle/share/doc/vbar.spdx.json"  # an error if NOTICE lacks a component
 cat > "$bundle/vbar" << 'EOF'
 #!/bin/sh
 # vbar by the loader and the libraries of this folder.

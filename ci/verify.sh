@@ -29,4 +29,5 @@ build/host/vbar verify --to runs/verification ${1:+--budget "$1"} || met=$?
 ((met <= 1)) || exit "$met"
 cp runs/verification/verification.json docs/
 build/host/vbar verify --page docs/verification.json
+ci/requirements.py
 exit "$met"
