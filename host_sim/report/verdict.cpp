@@ -24,8 +24,9 @@ struct NamedOutcome {
 
 constexpr std::array kOutcomes{
     NamedOutcome{Outcome::kAchieved, "achieved", "every criterion of the mission is met"},
-    NamedOutcome{Outcome::kAchievedWithFaults, "achieved with faults",
-                 "every criterion is met although faults were injected or the flight software raised some"},
+    NamedOutcome{
+        Outcome::kAchievedWithFaults, "achieved with faults",
+        "every criterion is met although faults were injected, the flight software raised some or a testbed failed"},
     NamedOutcome{Outcome::kNotJudged, "not judged",
                  "the run ended before its first waypoint, and no [[limit]] of the mission judges it"},
     NamedOutcome{Outcome::kMissed, "missed",
@@ -201,6 +202,10 @@ std::string faults_text(const RunRecord& record) {
   const std::optional<telemetry_health>& health = record.summary.health;
   const Codes words{codes::telemetry_health_kFault, static_cast<int>(std::size(codes::telemetry_health_kFault)), true};
   if (health && health->faults != 0) add(fmt::format("raised {}", word_of(words, health->faults)));
+  for (const auto& [testbed, figures] : record.summary.testbeds)
+    if (const auto found = figures.find(std::string(kHandedOver)); found != figures.end())
+      if (const auto* const hour = std::get_if<double>(&found->second))
+        add(fmt::format("testbed {} handed over to its digital twin at {}", testbed, hours_text(3600.0 * *hour)));
   const FlightOutput& output = record.summary.flight_output;
   if (output.steps_failed > 0)
     add(fmt::format("{} of {} steps failed, the last with status {}", output.steps_failed, output.steps,
