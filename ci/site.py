@@ -18,7 +18,7 @@ CHAPTERS = {
     "Your mission": ["docs/keys.md", "docs/data_formats.md", "docs/run_folder.md", "docs/view.md", "docs/other_programs.md", "docs/tables.md", "docs/words.md", "docs/glossary.md", "docs/evidence.md", "docs/check.md", "docs/faults.md"],
     "Campaigns": ["docs/campaigns.md", "docs/campaign_page.md"],
     "Your flight code": ["docs/own_flight_code.md", "docs/external_sources.md", "docs/own_target.md", "docs/wire_formats.md", "docs/board_bringup.md"],
-    "Testbeds": ["docs/grand.md", "docs/generator_protocols.md", "docs/protocol_sources.md", "docs/optical_stimulator.md", "docs/tron.md"],
+    "Testbeds": ["docs/grand.md", "docs/generator_protocols.md", "docs/protocol_sources.md", "docs/optical_stimulator.md", "docs/tron.md", "docs/testbeds.md"],
     "How far to trust it": ["docs/verification.md", "docs/requirements.md", "docs/bound.md", "docs/accuracy.md"],
     "Source": ["docs/tour.md", "docs/recipes.md", "docs/keypoint_network.md", "CONTRIBUTING.md", "CHANGELOG.md"],
 }  # the headers' page is added to the last chapter

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <fstream>
+#include <iostream>
+#include <limits>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -15,6 +18,8 @@
 #include "hil_drivers/grand/grand_report.h"
 #include "hil_drivers/grand/pps/edge_source.h"
 #include "host_sim/mission/mission.h"
+#include "host_sim/sensors/gnss/gnss_kind.h"
+#include "host_sim/twins/gnss/gnss_receiver.h"
 
 namespace vbar::grand {
 
@@ -76,6 +81,9 @@ std::shared_ptr<const mission::TestbedSettings> read_grand(const TableReader& se
   read_edges(section, *settings);
   settings->give_up = section.span("give_up_s", 1.0, from_to(1.0, 1e6), 300.0);
   settings->week_shift = section.flag("week_shift", false);
+  settings->on_failure = testbeds::read_on_failure(section);
+  if (settings->on_failure == testbeds::OnFailure::kTwin && settings->pace == Pace::kRealTime)
+    section.refuse_value("on_failure", "stop, as pace is real_time: the generator's time is the run's");
   section.finish();
   return settings;
 }
@@ -119,14 +127,17 @@ GrandRun::~GrandRun() {
   stop();
 }
 
-void GrandRun::fail(const std::string& reason) {
+std::runtime_error GrandRun::error_of(const std::string& reason) {
   // Its connections are closed before its end is known.
   constexpr std::chrono::milliseconds kEnd{300};
   const auto end = process_ ? process_->end_report(kEnd) : std::nullopt;
-  throw std::runtime_error("testbed grand: " + (end ? *end : reason));
+  return std::runtime_error("testbed grand: " + (end ? *end : reason));
 }
 
 std::unique_ptr<twins::gnss::ReceiverBytes> GrandRun::make_receiver(const testbeds::ReceiverPlan& plan) {
+  if (settings_.on_failure == testbeds::OnFailure::kTwin && plan.line.wired == testbeds::Wiring::kBoard)
+    throw std::runtime_error("testbed grand: on_failure = \"twin\" and the receiver of " + plan.spacecraft +
+                             " is wired to the board, which no twin is");
   vehicles_.emplace_back(plan);
   return std::make_unique<GrandSource>(shared_from_this(), vehicles_.size() - 1);
 }
@@ -135,6 +146,7 @@ void GrandRun::start(GpsTime first_epoch) {
   if (is_started_) return;
   is_started_ = true;
   start_ = first_epoch;
+  const auto begin = std::chrono::steady_clock::now();
   try {
     if (start_.ns % fsw::kNanosecondsPerSecond != 0)
       throw std::runtime_error("the run does not start on a whole second of GPS time, as a generator does");
@@ -145,8 +157,9 @@ void GrandRun::start(GpsTime first_epoch) {
     start_vehicles(first_epoch);
     start_generator();
     for (Vehicle& vehicle : vehicles_) vehicle.link->open();
+    use_.start_wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   } catch (const std::runtime_error& error) {
-    fail(error.what());
+    throw error_of(error.what());
   }
 }
 
@@ -248,7 +261,7 @@ void GrandRun::begin(report::RunRecord& record, const std::filesystem::path& fol
     const auto host_start = generator_->start();
     if (time_base_) time_base_->begin(host_start);
   } catch (const std::runtime_error& error) {
-    fail(error.what());
+    throw error_of(error.what());
   }
 }
 
@@ -276,6 +289,43 @@ std::optional<io::WiredReceiver> GrandRun::wired_receiver(std::size_t index) con
 }
 
 twins::gnss::ReceiverOutput GrandRun::exchange(std::size_t index, const BodyTruth& truth) {
+  Vehicle& vehicle = vehicles_[index];
+  if (vehicle.twin) return output_of_twin(vehicle, truth);
+  try {
+    return exchange_by_testbed(index, truth);
+  } catch (const std::runtime_error& error) {
+    if (settings_.on_failure == testbeds::OnFailure::kStop) throw;
+    hand_over(truth.time, error.what());
+    auto output = output_of_twin(vehicle, truth);
+    output.notes.push_back({"testbed_handed_over", std::numeric_limits<double>::quiet_NaN(), error.what()});
+    return output;
+  }
+}
+
+/// Both receivers, which share a sky.
+void GrandRun::hand_over(GpsTime time, const std::string& reason) {
+  std::cerr << reason << "; the digital twins of the receivers take over\n";
+  use_.handed_over_h = fsw::seconds(time - context_.mission.epoch) / 3600.0;
+  use_.failure = reason;
+  stop();
+  const mission::Mission& mission = context_.mission;
+  const auto sky = std::make_shared<const twins::gnss::Constellation>(
+      context_.data_directory, mission::shared_settings<sensors::GnssShared>(mission).constellation,
+      mission.start_time(), mission.seed);
+  for (Vehicle& vehicle : vehicles_)
+    vehicle.twin = std::make_unique<twins::gnss::GnssReceiver>(vehicle.plan.settings, sky, context_.data_directory,
+                                                               mission.seed, vehicle.plan.spacecraft);
+}
+
+twins::gnss::ReceiverOutput GrandRun::output_of_twin(Vehicle& vehicle, const BodyTruth& truth) const {
+  const Duration period = fsw::nearest_duration(vehicle.plan.settings.output.period_s);
+  if ((truth.time - start_).ns % period.ns == 0) return vehicle.twin->output_at(truth);
+  twins::gnss::ReceiverOutput between;
+  between.is_epoch = false;
+  return between;
+}
+
+twins::gnss::ReceiverOutput GrandRun::exchange_by_testbed(std::size_t index, const BodyTruth& truth) {
   try {
     send_sample(index, truth);
     if (settings_.pace == Pace::kLockStep) wait_for_generator(index, truth.time - start_);
@@ -285,7 +335,7 @@ twins::gnss::ReceiverOutput GrandRun::exchange(std::size_t index, const BodyTrut
     if (is_last && (truth.time - start_).ns % fsw::kNanosecondsPerSecond == 0) end_second(truth.time);
     return output;
   } catch (const std::runtime_error& error) {
-    fail(error.what());
+    throw error_of(error.what());
   }
 }
 
@@ -377,6 +427,7 @@ void GrandRun::finish() noexcept {
   for (const Vehicle& vehicle : vehicles_)
     if (vehicle.link) figures.receivers.emplace_back(vehicle.plan.spacecraft, vehicle.link->statistics());
   add_figures(figures, *record_);
+  use_.add_to(record_->summary.testbeds["grand"]);
   record_ = nullptr;
 }
 

@@ -8,12 +8,14 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "fsw/core/gps_time.h"
 #include "hil_drivers/common/emulator_process.h"
+#include "hil_drivers/common/testbed_use.h"
 #include "hil_drivers/grand/generators/generator.h"
 #include "hil_drivers/grand/pps/time_base.h"
 #include "hil_drivers/grand/receiver_link.h"
@@ -43,6 +45,7 @@ struct GrandSettings : mission::TestbedSettings {
   std::string bench;      ///< command line of the emulator; empty: hardware, or an emulator that runs already
   fsw::Duration give_up;  ///< duration of a receiver's loss after which the run ends
   bool week_shift = false;
+  testbeds::OnFailure on_failure = testbeds::OnFailure::kStop;
   std::string chrony;  ///< socket of chronyd's refclock SOCK, to which edges are forwarded; empty: none
 };
 
@@ -104,6 +107,7 @@ struct Vehicle {
   std::unique_ptr<ReceiverLink> link;
   fsw::Duration last_sample{-1};  ///< time of the last sample sent, since the start
   GeneratorState state{};
+  std::unique_ptr<twins::gnss::ReceiverBytes> twin;  ///< once it has taken over
 };
 
 // GNSS testbed during one run: one RF generator and the receivers of both spacecraft, shared by their sources.
@@ -140,7 +144,12 @@ class GrandRun final : public testbeds::TestbedRun, public std::enable_shared_fr
   [[nodiscard]] std::string edge_source() const;
   void end_second(fsw::GpsTime now);
   void poll_states();
-  [[noreturn]] void fail(const std::string& reason);
+  [[nodiscard]] twins::gnss::ReceiverOutput exchange_by_testbed(std::size_t vehicle,
+                                                                const twins::gnss::BodyTruth& truth);
+  [[nodiscard]] std::runtime_error error_of(const std::string& reason);
+  void hand_over(fsw::GpsTime time, const std::string& reason);
+  /// Returns the epochs of the vehicle's twin, which has those of the period in the calls of the testbed.
+  [[nodiscard]] twins::gnss::ReceiverOutput output_of_twin(Vehicle& vehicle, const twins::gnss::BodyTruth& truth) const;
 
   GrandSettings settings_;
   testbeds::RunContext context_;
@@ -152,6 +161,7 @@ class GrandRun final : public testbeds::TestbedRun, public std::enable_shared_fr
   std::unique_ptr<Generator> generator_;
   std::optional<TimeBase> time_base_;  ///< real time only
   SampleTimes sample_times_;
+  testbeds::TestbedUse use_;
   report::RunRecord* record_ = nullptr;
 };
 

@@ -54,6 +54,7 @@ std::shared_ptr<const mission::TestbedSettings> read_optical_stimulator(const Ta
   settings->retries = static_cast<int>(section.integer("retries", 0, 20, settings->retries));
   settings->any_exposure = section.flag("any_exposure", false);
   settings->white_electrons = section.number("strip_electrons", from_to(1000.0, 1e6), settings->white_electrons);
+  settings->on_failure = testbeds::read_on_failure(section);
   section.finish();
   return settings;
 }
@@ -90,7 +91,7 @@ void check_exposure(double exposure_s, double rate_hz) {
 
 StimulatorRun::StimulatorRun(const OpticalStimulatorSettings& settings, const testbeds::RunContext& context)
     : CameraRun("optical_stimulator", context, calibration_file(settings, context.data_directory, context.mission.seed),
-                {"render_s", &StimulatorRow::render_s}),
+                {"render_s", &StimulatorRow::render_s}, settings.on_failure),
       settings_(settings) {}
 
 StimulatorRun::~StimulatorRun() {
@@ -225,6 +226,6 @@ testbeds::CalibratedCamera calibrated(const mission::TestbedSettings& settings, 
 }  // namespace
 
 const testbeds::TestbedKind kOpticalStimulator{
-    {"optical_stimulator", read_optical_stimulator}, open, {tables, summarise, sections}, calibrated};
+    {"optical_stimulator", read_optical_stimulator}, open, {tables, summarise, sections}, calibrated, nullptr, true};
 
 }  // namespace vbar::optical_stimulator

@@ -35,6 +35,7 @@ struct OpticalStimulatorSettings : mission::TestbedSettings {
   int retries = 3;
   bool any_exposure = false;  ///< exposures need not be whole frames of the display
   double white_electrons = 12000.0;
+  testbeds::OnFailure on_failure = testbeds::OnFailure::kStop;
 };
 
 /// Throws MissionError.

@@ -47,6 +47,7 @@ std::shared_ptr<const mission::TestbedSettings> read_tron(const TableReader& sec
   tron.timeout = std::chrono::milliseconds(section.integer("timeout_ms", 100, 600'000, tron.timeout.count()));
   tron.operator_timeout =
       std::chrono::seconds(section.integer("operator_timeout_s", 1, 100'000, tron.operator_timeout.count()));
+  tron.on_failure = testbeds::read_on_failure(section);
   section.finish();
   return settings;
 }
@@ -113,7 +114,7 @@ twins::camera::CameraSettings calibrated_camera(const Calibration& calibration,
 
 TronRun::TronRun(const TronSettings& settings, const testbeds::RunContext& context)
     : CameraRun("tron", context, calibration_file(settings, context.data_directory, context.mission.seed),
-                {"bench_s", &TronRow::bench_s}),
+                {"bench_s", &TronRow::bench_s}, settings.on_failure),
       settings_(settings),
       laboratory_file_(replaced(settings.laboratory, context.data_directory, context.mission.seed)) {}
 

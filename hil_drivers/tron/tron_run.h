@@ -39,6 +39,7 @@ struct TronSettings : mission::TestbedSettings {
   int packet_size = 8000;
   std::chrono::milliseconds timeout{3000};     ///< wall clock: of a device that does not answer
   std::chrono::seconds operator_timeout{600};  ///< bench time: of a stop that the operator has to clear
+  testbeds::OnFailure on_failure = testbeds::OnFailure::kStop;
 };
 
 /// Throws MissionError.

@@ -24,8 +24,9 @@ struct NamedOutcome {
 
 constexpr std::array kOutcomes{
     NamedOutcome{Outcome::kAchieved, "achieved", "every criterion of the mission is met"},
-    NamedOutcome{Outcome::kAchievedWithFaults, "achieved with faults",
-                 "every criterion is met although faults were injected or the flight software raised some"},
+    NamedOutcome{
+        Outcome::kAchievedWithFaults, "achieved with faults",
+        "every criterion is met although faults were injected, the flight software raised some or a testbed failed"},
     NamedOutcome{Outcome::kNotJudged, "not judged",
                  "the run ended before its first waypoint, and no [[limit]] of the mission judges it"},
     NamedOutcome{Outcome::kMissed, "missed",
@@ -194,6 +195,19 @@ std::string achievement(const RunRecord& record, const Goals& goals) {
   return text;
 }
 
+/// Testbeds whose digital twins took over: what the run shows of them holds until then.
+std::string hand_overs(const RunRecord& record) {
+  std::string text;
+  for (const auto& [testbed, figures] : record.summary.testbeds) {
+    const auto found = figures.find(std::string(kHandedOver));
+    const auto* const hour = found == figures.end() ? nullptr : std::get_if<double>(&found->second);
+    if (hour == nullptr) continue;
+    text += fmt::format("{}testbed {} handed over to its digital twin at {}", text.empty() ? "" : ", ", testbed,
+                        hours_text(3600.0 * *hour));
+  }
+  return text;
+}
+
 std::string faults_text(const RunRecord& record) {
   std::string text;
   const auto add = [&text](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
@@ -201,6 +215,7 @@ std::string faults_text(const RunRecord& record) {
   const std::optional<telemetry_health>& health = record.summary.health;
   const Codes words{codes::telemetry_health_kFault, static_cast<int>(std::size(codes::telemetry_health_kFault)), true};
   if (health && health->faults != 0) add(fmt::format("raised {}", word_of(words, health->faults)));
+  if (const std::string twins = hand_overs(record); !twins.empty()) add(twins);
   const FlightOutput& output = record.summary.flight_output;
   if (output.steps_failed > 0)
     add(fmt::format("{} of {} steps failed, the last with status {}", output.steps_failed, output.steps,
@@ -261,6 +276,7 @@ Verdict verdict_of(const RunRecord& record, const Goals& goals) {
     if (finding.outcome != verdict.outcome) verdict.reason += fmt::format("{} ", word_of(finding.outcome));
     verdict.reason += finding.text;
   }
+  if (const std::string twins = hand_overs(record); !twins.empty()) verdict.reason += "; " + twins;
   return verdict;
 }
 

@@ -84,6 +84,9 @@ struct Verdict {
 /// A mission that is achieved, or whose run was too short for any criterion.
 [[nodiscard]] bool is_favourable(Outcome outcome);
 
+/// Figure of a testbed whose digital twin took over: since when, in hours of the mission.
+inline constexpr std::string_view kHandedOver = "handed_over_h";
+
 /// "achieved: 10 waypoints reached, ..."
 [[nodiscard]] std::string verdict_line(const Summary& summary);
 

@@ -158,6 +158,9 @@ struct TestbedKind : mission::TestbedReader {
   /// Makes the truth of a run, if the kind supplies it. Throws std::runtime_error if the plan cannot be met.
   std::unique_ptr<TestbedTruth> (*make_truth)(const mission::TestbedSettings& settings,
                                               const TruthPlan& plan) = nullptr;
+  /// Whether its camera gives the light of any commanded exposure, whatever its own: a display shows in its exposure
+  /// the electrons of another.
+  bool shows_commanded_exposures = false;
 };
 
 }  // namespace vbar::testbeds

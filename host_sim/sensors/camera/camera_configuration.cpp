@@ -9,6 +9,7 @@
 #include "host_sim/mission/mission.h"
 #include "host_sim/mission/name_search.h"
 #include "host_sim/mission/read_attitude.h"
+#include "host_sim/mission/read_sections.h"
 #include "host_sim/mission/sensor_reader.h"
 #include "host_sim/sensors/camera/camera_kind.h"
 #include "host_sim/sensors/camera/make_camera.h"
@@ -91,6 +92,9 @@ std::shared_ptr<const mission::SensorSettings> read_camera(const TableReader& se
   camera.keypoint_exposure_s = read_keypoint_exposure(section, camera);
   camera.images =
       mission::read_cadence(section, "period_s", from_to(0.1, 3600.0), context.mission, context.mission.step);
+  camera.images_until =
+      context.mission.epoch +
+      section.span("until_h", mission::kHour_s, from_to(0.0, mission::kLongestMission_h), mission::kLongestMission_h);
   camera.readout = section.span("readout_s", 1.0, from_to(0.0, 3600.0), 2.0);
   if (const auto q = mission::read_quaternion(section, "q_camera_body")) camera.q_camera_body = *q;
   const auto position = section.three_numbers("position_body_m", from_to(-50.0, 50.0), {{0.0, 0.0, 0.0}});

@@ -59,7 +59,8 @@ void check(const TableReader& section, const Sensor& sensor, const Spacecraft& s
   if (!servicer.attitude) section.refuse("", "a camera without an attitude", "an attitude: a camera looks somewhere");
   check_target(section, camera, mission);
   if (!camera.is_used()) return;
-  if (camera.changes_use() && camera.source != "digital" && camera.source != "recorded")
+  const testbeds::TestbedKind* const testbed = testbeds::find_testbed(camera.source);
+  if (camera.changes_use() && testbed != nullptr && !testbed->shows_commanded_exposures)
     section.refuse("navigation",
                    "two uses of a camera of the testbed \"" + camera.source + "\", whose exposure is fixed",
                    "one of \"angles_only\" and \"pose\"");

@@ -18,6 +18,7 @@ struct CameraSensor : mission::SensorSettings {
   std::string camera;  ///< its file as the mission names it, which `settings` began with
   twins::camera::CameraSettings settings;
   engine::Cadence images{fsw::GpsTime{}, fsw::duration_of_seconds(60)};  ///< middles of the exposures
+  std::optional<fsw::GpsTime> images_until;  ///< time of the last image at the latest; empty: the end of the run
   /// Exposure of images for keypoints; images for bearings have the exposure of `settings`. The flight software
   /// commands which.
   double keypoint_exposure_s = 0.0;
@@ -25,6 +26,11 @@ struct CameraSensor : mission::SensorSettings {
   Eigen::Quaterniond q_camera_body = Eigen::Quaterniond::Identity();  ///< camera axes: z boresight, x right, y down
   fsw::Vector3 position_body_m = fsw::Vector3::Zero();                ///< from the centre of mass
 
+  /// Returns the time of the first image at or after `from`; empty after the last one.
+  [[nodiscard]] std::optional<fsw::GpsTime> next_image(fsw::GpsTime from) const {
+    const fsw::GpsTime next = images.next_at(from);
+    return images_until && next > *images_until ? std::nullopt : std::optional(next);
+  }
   [[nodiscard]] bool has_use(std::int32_t use) const { return (navigation & use) != 0; }
   [[nodiscard]] bool is_used() const { return navigation != 0; }
   /// Whether navigation uses its images for bearings while the target is a point, keypoints once it is resolved.

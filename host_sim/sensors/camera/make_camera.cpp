@@ -114,6 +114,7 @@ std::unique_ptr<twins::PacketSource> make_camera(const Mission& mission, const S
   settings.mount = mount_of(mission, servicer, camera, data_directory);
   // The first image is taken one period after the first step, which commands the pointing of the platform.
   settings.images = camera.images;
+  settings.until = camera.images_until;
   settings.readout = camera.readout;
   if (camera.changes_use()) settings.first_exposure_s = camera.settings.exposure_s;
   settings.sends_packets = camera.is_used();

@@ -133,19 +133,9 @@ std::shared_ptr<const mission::SensorSettings> read_gnss(const TableReader& sect
 
 namespace {
 
-bool has_receiver_in_testbed(const mission::Mission& mission) {
-  for (const mission::Spacecraft& spacecraft : mission.spacecraft) {
-    const auto* const receiver = mission::find_settings<GnssSensor>(spacecraft);
-    if (receiver != nullptr && testbeds::find_testbed(receiver->source) != nullptr) return true;
-  }
-  return false;
-}
-
-void read_crosslink(const TableReader& section, const mission::Mission& mission, GnssShared& shared) {
+void read_crosslink(const TableReader& section, GnssShared& shared) {
   constexpr double kHour_s = 3600.0;
   shared.crosslink_from = section.span("from_h", kHour_s, from_to(0.0, mission::kLongestMission_h), 0.0);
-  if (shared.crosslink_from > fsw::Duration{} && has_receiver_in_testbed(mission))
-    section.refuse_value("from_h", "0: a receiver in a testbed is not switched on during the mission");
   twins::gnss::CrosslinkSettings& crosslink = shared.crosslink;
   if (section.has("latency")) crosslink.link.latency = mission::read_latency(section.table("latency"));
   read(section, "loss_probability", from_to(0.0, 1.0), crosslink.link.loss_probability);
@@ -181,7 +171,7 @@ std::shared_ptr<const mission::SharedSettings> read_gnss_shared(const TableReade
   const TableReader constellation = document.table("constellation");
   shared->constellation.navigation_files = mission::data_files(constellation, "navigation_files", mission);
   read_constellation(constellation, shared->constellation);
-  read_crosslink(document.table("links").table("crosslink"), mission, *shared);
+  read_crosslink(document.table("links").table("crosslink"), *shared);
   return shared;
 }
 
@@ -260,10 +250,13 @@ std::unique_ptr<twins::PacketSource> make_receiver(const MakeContext& context, c
   auto receiver = testbed != nullptr ? make_of_testbed(*testbed, context, carrier) : make_twin(context, carrier);
   sensor.period = receiver->call_period().value_or(
       fsw::nearest_duration(find_settings<GnssSensor>(carrier)->receiver.output.period_s));
-  // The partner's epochs are those of the servicer's receiver, whenever they begin.
-  if (&carrier != &context.servicer)
-    sensor.start = twins::next_periodic_epoch(
-        sensor.start, sensor.period, mission.epoch + mission::shared_settings<GnssShared>(mission).crosslink_from);
+  if (&carrier != &context.servicer) {
+    // The partner's epochs are those of the servicer's receiver, whenever they begin. A device follows the motion from
+    // the start, and is tracking when its data begin to be sent.
+    const fsw::GpsTime from = mission.epoch + mission::shared_settings<GnssShared>(mission).crosslink_from;
+    sensor.delivers_from = from;
+    if (testbed == nullptr) sensor.start = twins::next_periodic_epoch(sensor.start, sensor.period, from);
+  }
   std::unique_ptr<twins::gnss::Crosslink> crosslink;
   if (&carrier != &context.servicer)
     crosslink = std::make_unique<twins::gnss::Crosslink>(mission::shared_settings<GnssShared>(mission).crosslink,

@@ -70,7 +70,9 @@ CameraSensor::CameraSensor(const Settings& settings, std::unique_ptr<ImageTaker>
 }
 
 std::optional<fsw::GpsTime> CameraSensor::next_epoch(fsw::GpsTime from) const {
-  return settings_.images.next_at(from);
+  const fsw::GpsTime next = settings_.images.next_at(from);
+  if (settings_.until && next > *settings_.until) return std::nullopt;
+  return next;
 }
 
 void CameraSensor::command(const fsw::packets::PacketView& packet, fsw::GpsTime effective) {

@@ -64,6 +64,7 @@ class CameraSensor final : public PacketSource {
     ImageMaker::Settings image;
     CameraMount mount;
     engine::Cadence images{fsw::GpsTime{}, fsw::duration_of_seconds(60)};  ///< middles of the exposures
+    std::optional<fsw::GpsTime> until = std::nullopt;                      ///< no image after it
     fsw::Duration readout;  ///< >= 0: from the middle of an exposure until its packets leave
     /// Exposure of the first images, if commands may change it; without a value it is always that of the settings.
     std::optional<double> first_exposure_s = std::nullopt;

@@ -67,7 +67,7 @@ Measurement GnssSensor::measure(const TruthSnapshot& truth) {
   measurement.status = MeasurementStatus::kReady;
   const fsw::GpsTime complete = truth.time + output.delay;
   measurement.available = complete;
-  if (!output.is_epoch) return measurement;
+  if (!output.is_epoch || truth.time < settings_.delivers_from) return measurement;
   const gnss::EpochAttitude measured = output.measured.value_or(
       gnss::EpochAttitude{truth.time, spacecraft->attitude->q_body_eci, spacecraft->attitude->rate_body});
   bool finite = true;

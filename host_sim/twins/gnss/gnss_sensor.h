@@ -22,6 +22,7 @@ class GnssSensor final : public PacketSource {
     std::uint8_t flight_number = 0;  ///< number of the spacecraft whose flight software receives the packets
     fsw::GpsTime start;              ///< first epoch
     fsw::Duration period;            ///< > 0, integer milliseconds: between calls of the receiver
+    fsw::GpsTime delivers_from{};    ///< the data of earlier epochs are not sent
   };
 
   /// Makes a sensor. `crosslink`: how the bytes reach the flight software; null: by wire. `receiver` must not be null.

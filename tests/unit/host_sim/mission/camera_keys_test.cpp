@@ -108,6 +108,14 @@ TEST(CameraKeys, ACameraOfTwoUsesHasTwoExposures) {
   EXPECT_EQ(camera.images.parts()[1].from, mission.epoch + fsw::duration_of_seconds(36 * 3600));
 }
 
+TEST(CameraKeys, UntilHEndsTheImages) {
+  const Mission mission = mission_with({"camera.period_s=60", "camera.until_h=2"});
+  const CameraSensor& camera = sensor_of<CameraSensor>(mission);
+  const fsw::GpsTime last = mission.epoch + fsw::duration_of_seconds(2 * 3600);
+  EXPECT_EQ(camera.next_image(last - fsw::duration_of_seconds(1)), last);
+  EXPECT_EQ(camera.next_image(last + fsw::Duration{1}), std::nullopt);
+}
+
 TEST(CameraKeys, EveryKeyArrives) {
   const Mission mission = mission_with({"camera.camera=tron", "camera.period_s=30", "camera.readout_s=1.5",
                                         "camera.exposure_s=0.1", "camera.region_px=[10, 20, 300, 400]",

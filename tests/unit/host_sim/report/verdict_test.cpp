@@ -106,6 +106,16 @@ TEST(Verdict, FaultsOfScenarioOrFlightSoftwareAreNamed) {
   EXPECT_THAT(line(record, goals()), HasSubstr("3 of 121 steps failed, the last with status 12345"));
 }
 
+TEST(Verdict, NamesATestbedWhoseTwinTookOver) {
+  RunRecord record = flown_run();
+  record.summary.testbeds["tron"]["handed_over_h"] = 0.5;
+  EXPECT_THAT(line(record, goals()), StartsWith("achieved with faults: "));
+  EXPECT_THAT(line(record, goals()), HasSubstr("testbed tron handed over to its digital twin at 0.500 h"));
+  record.waypoints[1].control_error_m = 20.0;
+  EXPECT_THAT(line(record, goals()), StartsWith("missed: waypoint 1 by 20 m"));
+  EXPECT_THAT(line(record, goals()), HasSubstr("; testbed tron handed over to its digital twin at 0.500 h"));
+}
+
 TEST(Verdict, NavigationIsLostWhenItEndedBeforeAWaypoint) {
   RunRecord record = flown_run();
   for (EstimateRow& row : record.estimates) row.navigation_valid = row.time_s < 1800.0 ? 1 : 0;

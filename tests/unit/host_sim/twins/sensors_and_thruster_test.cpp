@@ -101,6 +101,18 @@ TEST_F(GnssSensorTest, SampleBetweenEpochsDeliversNothing) {
   EXPECT_TRUE(measurement.packets.empty());
 }
 
+TEST(GnssSensor, CallsAReceiverWhoseDataAreSentLaterFromTheStart) {
+  auto receiver = std::make_unique<Receiver>();
+  Receiver& called = *receiver;
+  const fsw::Duration period{100'000'000};
+  GnssSensor sensor({"servicer", 1, kStart, period, kStart + period}, std::move(receiver), nullptr);
+  called.output.bytes = {1, 2, 3};
+  EXPECT_EQ(sensor.next_epoch(kStart), kStart);
+  EXPECT_TRUE(sensor.measure(snapshot(kStart)).packets.empty());
+  EXPECT_EQ(called.last.time, kStart);
+  EXPECT_EQ(sensor.measure(snapshot(kStart + period)).packets.size(), 2U) << "bytes and attitude";
+}
+
 TEST_F(GnssSensorTest, ReceiverThatGaveNothingFailsTheEpoch) {
   receiver_->output.failure = "/dev/ttyUSB1 hung up";
   const Measurement measurement = sensor_->measure(snapshot(kStart));

@@ -67,6 +67,14 @@ TEST(CameraSensor, MeasuresEveryPeriod) {
   EXPECT_EQ(sensor.next_epoch(kStart + fsw::Duration{1}), kStart + kPeriod);
 }
 
+TEST(CameraSensor, TakesItsLastImageByTheEndOfItsUse) {
+  CameraSensor::Settings settings = small_camera();
+  settings.until = kStart + kPeriod;
+  const CameraSensor sensor(settings, one_pixel);
+  EXPECT_EQ(sensor.next_epoch(kStart + fsw::Duration{1}), kStart + kPeriod);
+  EXPECT_EQ(sensor.next_epoch(kStart + kPeriod + fsw::Duration{1}), std::nullopt);
+}
+
 TEST(CameraSensor, PacketsAreTheImage) {
   CameraSensor sensor(small_camera(), one_pixel);
   const fsw::GpsTime time = kStart + kPeriod + kPeriod;
