@@ -18,6 +18,7 @@ constexpr double kFluxGain = 0.2;
 // Limit of the brightness term: the target may show a glint or a penumbra.
 constexpr double kMaxDislike = 4.5;
 constexpr double kMisfitGain = 0.15;
+constexpr double kUnknownDistance = 0.5;  // 1 sigma over the distance of the target
 
 double determinant_of(const Matrix2& m) {
   return m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0);
@@ -140,14 +141,18 @@ bool TargetTracker::is_narrow(double gate, double determinant) const {
 
 void TargetTracker::propagate_all(const TrackerInput& input) {
   const ServicerView& view = work_.view;
+  // A burn turns the bearing of a satellite by an angle that its distance decides: that of another one is unknown.
+  Prediction of_another = work_.prediction;
+  of_another.along_track_sigma_fraction = std::max(of_another.along_track_sigma_fraction, kUnknownDistance);
   for (std::size_t k = 0; k < count_; ++k) {
     RelativeMotion& motion = hypotheses_[k].motion;
+    const Prediction& prediction = is_another(hypotheses_[k]) ? of_another : work_.prediction;
     GpsTime now = time_;
     bool alive = true;
     for (const OwnBurn& burn : input.burns) {
       alive = alive && propagate(motion, view, seconds(burn.time - now), settings_.motion);
       const double latitude = view.latitude - view.latitude_rate * seconds(input.time - burn.time);
-      apply_burn(motion, burn, latitude, view, work_.prediction, settings_.motion);
+      apply_burn(motion, burn, latitude, view, prediction, settings_.motion);
       now = burn.time;
     }
     alive = alive && propagate(motion, view, seconds(input.time - now), settings_.motion);

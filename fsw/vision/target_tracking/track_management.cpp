@@ -17,6 +17,8 @@ constexpr double kMagnitudesPerLog = 1.0857362047581296;  // 2.5 / ln 10
 constexpr double kMaxHistoryLoss = 8.0;
 constexpr double kHistoryGain = 0.02;        // of an image: the mean of an hour
 constexpr SlopeFloors kRegular{1e-6, 1e-8};  // keep a covariance regular
+// 1-sigma error of each element of a relative orbit (relative_motion.h) that was propagated through an eclipse.
+constexpr double kReturn = 5e-4;
 
 }  // namespace
 
@@ -75,10 +77,29 @@ void TargetTracker::compare_with_prediction() {
         slope_distance(Vector5::Zero(), state.covariance + unknown * unknown * unit, kRegular);
     hypothesis.distance = as_target.square;
     double evidence = 0.5 * (as_other.log_determinant - as_target.log_determinant - as_target.square);
-    // That a satellite seen beside the target still moves as it did is no evidence for the target.
-    if (work_.is_search && is_another(hypothesis)) evidence = std::min(evidence, 0.0);
+    if (work_.is_search) evidence -= evidence_for_known(hypothesis, state, unit);
     hypothesis.identity = evidence - history_loss(hypothesis);
   }
+}
+
+/// Log-likelihood ratio of being a satellite that was seen beside the target against any. That one still moves as it
+/// did is no evidence for the target, nor if it returns from eclipse as a new track.
+double TargetTracker::evidence_for_known(const Hypothesis& hypothesis, const SlopeState& state,
+                                         const Matrix5& unit) const {
+  const double unknown = settings_.motion.shape_sigma;
+  const SlopeDistance as_any = slope_distance(Vector5::Zero(), state.covariance + unknown * unknown * unit, kRegular);
+  double strongest = 0.0;
+  for (std::size_t k = 0; k < count_; ++k) {
+    const Hypothesis& known = hypotheses_[k];
+    if (!is_another(known) || !is_best_of_its_track(k)) continue;
+    const SlopeState then = slope_state(known.motion, work_.view, work_.bend, work_.bend_rate);
+    const bool is_itself = known.track == hypothesis.track;
+    const SlopeDistance as_known =
+        slope_distance(is_itself ? Vector5(Vector5::Zero()) : Vector5(state.slopes - then.slopes),
+                       state.covariance + then.covariance + kReturn * kReturn * unit, kRegular);
+    strongest = std::max(strongest, 0.5 * (as_any.log_determinant - as_known.log_determinant - as_known.square));
+  }
+  return strongest;
 }
 
 // Log-likelihood that the history of the target takes from a track, if it is searched. All objects have nearly the same

@@ -272,6 +272,53 @@ TEST(TargetTracker, FindsALostTargetWhereThePredictionIsNot) {
   EXPECT_GT(found, 60);
 }
 
+struct Search {
+  int found = 0;
+  int wrong = 0;
+};
+
+/// The target is hidden for two hours, at 50 km. A body on its orbit, 10 km behind, remains in view except in an
+/// eclipse, in which the servicer burns.
+Search search_beside_another(const TrackerSettings& settings, std::uint64_t seed) {
+  constexpr double kMeanMotion = 1.06e-3;
+  SceneSettings scenery = fifty_kilometres();
+  scenery.seed = seed;
+  scenery.decoys_a_roe_m = {scenery.target_a_roe_m + six(0.0, -10000.0, 0.0, 0.0, 0.0, 0.0)};
+  scenery.eclipses = {{13200.0, 14040.0}};
+  scenery.burns = {{13600.0, Vector3(0.0, 0.2, 0.2)}};
+  SceneMaker maker(scenery);
+  TargetTracker tracker(settings);
+  SearchRegion region;
+  Search search;
+  for (int k = 0; k < 360; ++k) {
+    Scene scene = maker.next();
+    const int target = scene.target_index();
+    if (k >= 180 && k < 300 && target >= 0) {
+      scene.candidates.erase(scene.candidates.begin() + target);
+      scene.source.erase(scene.source.begin() + target);
+    }
+    TrackerInput input = scene.input();
+    input.prediction = region.widened(*input.prediction, kMeanMotion);
+    input.is_search = region.is_widened();
+    const TrackerOutput output = tracker.step(input).value();
+    const bool is_right = output.confirmed && output.candidate == scene.target_index();
+    region.note(input.detection_probability > 0.5, output.confirmed, is_right);
+    if (k >= 180 && output.confirmed) ++(is_right ? search.found : search.wrong);
+  }
+  return search;
+}
+
+TEST(TargetTracker, ASatelliteSeenBesideTheTargetIsNotFoundInItsPlace) {
+  for (std::uint64_t seed = 1; seed <= vbar::test::share_under_sanitizers(5); ++seed) {
+    const Search search = search_beside_another({}, seed);
+    EXPECT_EQ(search.wrong, 0) << seed;
+    EXPECT_GT(search.found, 40) << seed;
+  }
+  TrackerSettings without_history;
+  without_history.least_identity = -1e9;
+  EXPECT_GT(search_beside_another(without_history, 1).wrong, 0);
+}
+
 TEST(TargetTracker, WithoutAPredictionTheOnlySatelliteIsTheTarget) {
   SceneMaker maker(clean_scene());
   TargetTracker tracker;
