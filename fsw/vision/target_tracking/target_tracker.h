@@ -106,8 +106,8 @@ class TargetTracker {
     return hypothesis.images_beside >= settings_.beside_images;
   }
   [[nodiscard]] int patience_with(const Hypothesis& hypothesis) const;
-  [[nodiscard]] double evidence_for_known(const Hypothesis& hypothesis, const SlopeState& state,
-                                          const Matrix5& unit) const;
+  [[nodiscard]] double evidence_for_known(const Hypothesis& hypothesis, const SlopeState& state, const Matrix5& unit,
+                                          double log_determinant_of_any) const;
   [[nodiscard]] double history_loss(const Hypothesis& hypothesis) const;
   void note_history(const Hypothesis& target);
   void prune();

@@ -77,17 +77,15 @@ void TargetTracker::compare_with_prediction() {
         slope_distance(Vector5::Zero(), state.covariance + unknown * unknown * unit, kRegular);
     hypothesis.distance = as_target.square;
     double evidence = 0.5 * (as_other.log_determinant - as_target.log_determinant - as_target.square);
-    if (work_.is_search) evidence -= evidence_for_known(hypothesis, state, unit);
+    if (work_.is_search) evidence -= evidence_for_known(hypothesis, state, unit, as_other.log_determinant);
     hypothesis.identity = evidence - history_loss(hypothesis);
   }
 }
 
 /// Log-likelihood ratio of being a satellite that was seen beside the target against any. That one still moves as it
 /// did is no evidence for the target, nor if it returns from eclipse as a new track.
-double TargetTracker::evidence_for_known(const Hypothesis& hypothesis, const SlopeState& state,
-                                         const Matrix5& unit) const {
-  const double unknown = settings_.motion.shape_sigma;
-  const SlopeDistance as_any = slope_distance(Vector5::Zero(), state.covariance + unknown * unknown * unit, kRegular);
+double TargetTracker::evidence_for_known(const Hypothesis& hypothesis, const SlopeState& state, const Matrix5& unit,
+                                         double log_determinant_of_any) const {
   double strongest = 0.0;
   for (std::size_t k = 0; k < count_; ++k) {
     const Hypothesis& known = hypotheses_[k];
@@ -97,7 +95,7 @@ double TargetTracker::evidence_for_known(const Hypothesis& hypothesis, const Slo
     const SlopeDistance as_known =
         slope_distance(is_itself ? Vector5(Vector5::Zero()) : Vector5(state.slopes - then.slopes),
                        state.covariance + then.covariance + kReturn * kReturn * unit, kRegular);
-    strongest = std::max(strongest, 0.5 * (as_any.log_determinant - as_known.log_determinant - as_known.square));
+    strongest = std::max(strongest, 0.5 * (log_determinant_of_any - as_known.log_determinant - as_known.square));
   }
   return strongest;
 }
