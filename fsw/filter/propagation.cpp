@@ -20,6 +20,13 @@ orbit::CartesianState moved(const orbit::CartesianState& s, double h, const Vect
 Propagation::Propagation(GpsTime start, const orbit::EarthOrientation& earth, const Vector3& sun_eci)
     : R_itrf_gcrf_(orbit::R_itrf_gcrf(start, earth)), sun_eci_(sun_eci) {}
 
+/// The air rotates with the Earth. Across the orbit its wind alternates with every revolution, in resonance with the
+/// relative inclination: at 51.6 deg and 400 km a differential drag of 1e-6 m/s^2 shifts the plane by 0.1 m in one.
+Vector3 Propagation::through_air(const orbit::CartesianState& s) const {
+  const Vector3 earth_rate = orbit::kEarthRotationRate * R_itrf_gcrf_.row(2).transpose();
+  return s.velocity_eci - earth_rate.cross(s.position_eci);
+}
+
 /// Within two hours the Earth's rotation is a constant rate: its pole moves by less than 1e-9 rad.
 Vector3 Propagation::acceleration(const orbit::CartesianState& s, double after,
                                   const DifferentialAcceleration& differential) const {
@@ -31,8 +38,8 @@ Vector3 Propagation::acceleration(const orbit::CartesianState& s, double after,
                               start_itrf.z());
   const Vector3 g = orbit::gravity_itrf(position_itrf);
   Vector3 a = R_itrf_gcrf_.transpose() * Vector3(c * g.x() - sn * g.y(), c * g.y() + sn * g.x(), g.z());
-  const Vector3 in_rtn = differential.empirical_rtn + Vector3(0.0, differential.along_track, 0.0);
-  if (!in_rtn.isZero(0.0)) a += orbit::R_rtn_eci(s).transpose() * in_rtn;
+  if (!differential.empirical_rtn.isZero(0.0)) a += orbit::R_rtn_eci(s).transpose() * differential.empirical_rtn;
+  if (differential.drag != 0.0) a += differential.drag * through_air(s).normalized();
   if (differential.from_sun != 0.0 && is_sunlit(s.position_eci, sun_eci_)) a -= differential.from_sun * sun_eci_;
   return a;
 }

@@ -17,7 +17,7 @@ struct Burn {
 
 /// Acceleration of a spacecraft relative to that of the other, m/s^2.
 struct DifferentialAcceleration {
-  double along_track = 0.0;                 ///< in T of its own RTN: drag
+  double drag = 0.0;                        ///< along its velocity through air that rotates with the Earth
   double from_sun = 0.0;                    ///< away from the Sun, while in sunlight: radiation pressure
   Vector3 empirical_rtn = Vector3::Zero();  ///< in its own RTN
 };
@@ -39,6 +39,9 @@ class Propagation {
  private:
   [[nodiscard]] Vector3 acceleration(const orbit::CartesianState& state, double after,
                                      const DifferentialAcceleration& differential) const;
+
+  /// Velocity relative to the air, m/s.
+  [[nodiscard]] Vector3 through_air(const orbit::CartesianState& state) const;
 
   Matrix3 R_itrf_gcrf_;  ///< at the start
   Vector3 sun_eci_;

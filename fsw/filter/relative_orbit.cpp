@@ -8,8 +8,8 @@
 namespace vbar::fsw::filter {
 namespace {
 
-constexpr int kAlongTrack = kAt<DifferentialAccelerations>;
-constexpr int kFromSun = kAlongTrack + 1;
+constexpr int kDrag = kAt<DifferentialAccelerations>;
+constexpr int kFromSun = kDrag + 1;
 constexpr int kEmpirical = kAt<EmpiricalAcceleration>;
 
 constexpr double square(double x) {
@@ -43,7 +43,7 @@ void RelativeOrbit::configure(const RelativeOrbitSettings& settings) {
 void RelativeOrbit::initialize(Estimate& estimate, const Vector6& roe, const Matrix6& covariance) {
   for (int k = 0; k < Roe::kSize; ++k) estimate.reset(k, 0.0, 0.0);
   estimate.transform_head<Roe::kSize>(roe, Matrix6::Identity(), covariance);
-  initialize_process(estimate, kAlongTrack, settings_.along_track);
+  initialize_process(estimate, kDrag, settings_.drag);
   initialize_process(estimate, kFromSun, settings_.from_sun);
   noise_.interrupt();
 }
@@ -69,7 +69,7 @@ bool RelativeOrbit::advance(const Estimate& estimate, const OrbitStep& step, Hea
       transform.start(estimate.mean().head<kOrbitSize>(), estimate.head_covariance<kOrbitSize>()) != Status::kOk) {
     return false;
   }
-  const double along_track_decay = settings_.along_track.decay(step.dt);
+  const double drag_decay = settings_.drag.decay(step.dt);
   const double from_sun_decay = settings_.from_sun.decay(step.dt);
   const double empirical_decay = settings_.empirical.decay(step.dt);
   std::array<Sampled, Transform::kPoints> moved;
@@ -82,17 +82,17 @@ bool RelativeOrbit::advance(const Estimate& estimate, const OrbitStep& step, Hea
     const auto target = target_from_roe(before.value(), x.head<6>());
     if (!target.ok()) return false;
     const filter::DifferentialAcceleration differential{
-        .along_track = x(kAlongTrack), .from_sun = x(kFromSun), .empirical_rtn = x.segment<3>(kEmpirical)};
+        .drag = x(kDrag), .from_sun = x(kFromSun), .empirical_rtn = x.segment<3>(kEmpirical)};
     const auto deputy = orbit::qns_from_cartesian(step.propagation.coast(target.value(), step.dt, differential));
     if (!deputy.ok()) return false;
-    moved[k] << orbit::roe_from_qns(after.value(), deputy.value()), along_track_decay * x(kAlongTrack),
+    moved[k] << orbit::roe_from_qns(after.value(), deputy.value()), drag_decay * x(kDrag),
         from_sun_decay * x(kFromSun), empirical_decay * x.segment<3>(kEmpirical);
   }
   const auto regression = transform.regress<kOrbitSize>(moved);
   motion.mean.head<kOrbitSize>() = regression.mean;
   motion.jacobian.topLeftCorner<kOrbitSize, kOrbitSize>() = regression.jacobian;
   motion.noise.topLeftCorner<kOrbitSize, kOrbitSize>() = regression.nonlinearity;
-  motion.noise(kAlongTrack, kAlongTrack) += settings_.along_track.renewed_variance(along_track_decay);
+  motion.noise(kDrag, kDrag) += settings_.drag.renewed_variance(drag_decay);
   motion.noise(kFromSun, kFromSun) += settings_.from_sun.renewed_variance(from_sun_decay);
   if (is_active<EmpiricalAcceleration>(estimate)) {
     for (int axis = 0; axis < 3; ++axis) {

@@ -17,9 +17,9 @@ namespace vbar::fsw::filter {
 
 struct RelativeOrbitSettings {
   filter::AdaptiveNoiseSettings acceleration;  ///< noise of all other effects, m^2/s^3, while `empirical` is inactive
-  GaussMarkov along_track{.sigma = 1e-9, .time_s = 6000.0};  ///< m/s^2, differential drag
-  GaussMarkov from_sun{.sigma = 3e-8, .time_s = 86400.0};    ///< m/s^2, differential radiation pressure in sunlight
-  GaussMarkov empirical{.sigma = 3e-8, .time_s = 1500.0};    ///< m/s^2, per axis, while active
+  GaussMarkov drag{.sigma = 1e-9, .time_s = 6000.0};       ///< m/s^2, differential drag
+  GaussMarkov from_sun{.sigma = 3e-8, .time_s = 86400.0};  ///< m/s^2, differential radiation pressure in sunlight
+  GaussMarkov empirical{.sigma = 3e-8, .time_s = 1500.0};  ///< m/s^2, per axis, while active
 
   bool operator==(const RelativeOrbitSettings&) const = default;
 };

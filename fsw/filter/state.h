@@ -26,7 +26,8 @@ struct Roe {
   static constexpr int kSize = 6;  ///< osculating, of the target with respect to the servicer, dimensionless
 };
 struct DifferentialAccelerations {
-  static constexpr int kSize = 2;  ///< m/s^2, of the target: along track (drag), away from the Sun (in sunlight)
+  static constexpr int kSize =
+      2;  ///< m/s^2, of the target: along its velocity through the air (drag), away from the Sun (in sunlight)
 };
 struct EmpiricalAcceleration {
   static constexpr int kSize = 3;  ///< m/s^2, of the target in its RTN

@@ -78,7 +78,7 @@ filter::FilterSettings filter_settings(const messaging::Telecommands& telecomman
     settings.relative_orbit.empirical = {.sigma = navigation->acceleration_sigma,
                                          .time_s = navigation->acceleration_time_s};
     if (navigation->acceleration_psd_most > kLikeSpacecraftPsd) {
-      settings.relative_orbit.along_track.sigma = math::sqrt(navigation->acceleration_psd_most / kRevolution_s);
+      settings.relative_orbit.drag.sigma = math::sqrt(navigation->acceleration_psd_most / kRevolution_s);
     }
   }
   return settings;

@@ -110,9 +110,31 @@ TEST_F(Coast, APushAlongTrackSlowsTheMeanLongitudeAsGaussSays) {
   const orbit::CartesianState start = truth->state(0);
   const Propagation propagation(settings.epoch, earth, kSun);
   const orbit::CartesianState free = propagation.coast(start, kOrbit_s);
-  const orbit::CartesianState pushed = propagation.coast(start, kOrbit_s, {.along_track = kPush, .from_sun = 0.0});
+  const orbit::CartesianState pushed = propagation.coast(start, kOrbit_s, {.drag = kPush, .from_sun = 0.0});
   const double expected = -1.5 * kPush * kOrbit_s * kOrbit_s;
   EXPECT_NEAR(orbit::relative_state_rtn(free, pushed).position_rtn.y(), expected, 0.01 * std::abs(expected));
+}
+
+TEST_F(Coast, AirThatRotatesWithTheEarthTurnsTheOrbitPlane) {
+  // The wind across the orbit is w r sin i cos u; Gauss: n a d(di)/dt = that share of the push, times cos u, whose mean
+  // over a revolution is one half.
+  constexpr double kPush = 1e-6;
+  const double a = 6778e3;
+  const double inclination = 51.6 * M_PI / 180.0;
+  const double n = std::sqrt(3.986004418e14 / (a * a * a));
+  const orbit::CartesianState start{.position_eci = {a, 0.0, 0.0},
+                                    .velocity_eci = n * a * Vector3(0.0, std::cos(inclination), std::sin(inclination))};
+  const Propagation propagation(settings.epoch, earth, kSun);
+  const double revolution_s = 2.0 * M_PI / n;
+  const orbit::CartesianState free = propagation.coast(start, revolution_s);
+  const orbit::CartesianState pushed = propagation.coast(start, revolution_s, {.drag = kPush});
+  const auto pole = [](const orbit::CartesianState& s) { return s.position_eci.cross(s.velocity_eci).normalized(); };
+  // Positive forward: the orbit leans towards the direction that the spacecraft has relative to the air, to higher
+  // inclination.
+  const double turned_m = a * (std::acos(pole(pushed).z()) - std::acos(pole(free).z()));
+  const double along_air = n * a - 7.2921e-5 * a * std::cos(inclination);
+  const double share = 7.2921e-5 * a * std::sin(inclination) / along_air;
+  EXPECT_NEAR(turned_m, 0.5 * kPush * share * revolution_s / n, 0.01);
 }
 
 TEST_F(Coast, SunlightPushesOnlyInTheLight) {
@@ -122,7 +144,7 @@ TEST_F(Coast, SunlightPushesOnlyInTheLight) {
   for (const double side : {1.0, -1.0}) {
     const Vector3 sun = side * start.position_eci / radius;
     const Propagation propagation(settings.epoch, earth, sun);
-    const Vector3 moved = propagation.coast(start, 30.0, {.along_track = 0.0, .from_sun = 1e-3}).position_eci -
+    const Vector3 moved = propagation.coast(start, 30.0, {.drag = 0.0, .from_sun = 1e-3}).position_eci -
                           propagation.coast(start, 30.0).position_eci;
     const Vector3 expected = side > 0.0 ? Vector3(-0.5 * 1e-3 * 900.0 * sun) : Vector3(Vector3::Zero());
     EXPECT_LT((moved - expected).norm(), 1e-3 * 0.45 + 1e-9);

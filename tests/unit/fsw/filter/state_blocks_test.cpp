@@ -29,7 +29,7 @@ FilterSettings without_noise() {
   FilterSettings settings;
   settings.earth = scene_earth();
   settings.relative_orbit.acceleration = {.psd = 1e-30, .psd_min = 1e-30, .psd_max = 1e-30};
-  settings.relative_orbit.along_track.sigma = 1e-15;
+  settings.relative_orbit.drag.sigma = 1e-15;
   settings.relative_orbit.from_sun.sigma = 1e-15;
   return settings;
 }

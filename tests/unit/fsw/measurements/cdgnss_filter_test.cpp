@@ -34,7 +34,7 @@ filter::FilterSettings known_orbit(double wander_sigma_m) {
   filter::FilterSettings settings;
   settings.earth = test::kEarth;
   settings.relative_orbit.acceleration = {.psd = 1e-24, .psd_min = 1e-24, .psd_max = 1e-24};
-  settings.relative_orbit.along_track.sigma = 1e-13;
+  settings.relative_orbit.drag.sigma = 1e-13;
   settings.relative_orbit.from_sun.sigma = 1e-13;
   settings.relative_orbit.empirical.sigma = 1e-13;
   // Of a single difference: two receivers.

@@ -29,7 +29,7 @@ struct FilterPair : gnss::test::CooperatingPair {
     filter_settings.earth = kEarth;
     // The empirical acceleration, and nothing else, drives the pair apart.
     filter_settings.relative_orbit.acceleration = {.psd = 1e-18, .psd_min = 1e-18, .psd_max = 1e-18};
-    filter_settings.relative_orbit.along_track.sigma = 1e-12;
+    filter_settings.relative_orbit.drag.sigma = 1e-12;
     filter_settings.relative_orbit.from_sun.sigma = 1e-12;
     filter_settings.burn_sigma_relative = 2e-3;
     carrier_settings.servicer_antenna_body_m = carrier_settings.target_antenna_body_m = nominal_antenna_m;

@@ -37,7 +37,7 @@ struct CombinedPair : test::FilterPair {
     const Vector6 a_roe_m = distance_m * (Vector6() << 0.0, -1.0, 0.0, 0.06, 0.0, 0.06).finished();
     target.start = orbit::target_from_roe(chief, a_roe_m / chief.a).value();
     filter_settings.relative_orbit.from_sun.sigma = 1e-10;
-    filter_settings.relative_orbit.along_track.sigma = 1e-10;
+    filter_settings.relative_orbit.drag.sigma = 1e-10;
     filter_settings.relative_orbit.empirical.sigma = 1e-10;
     filter_settings.processes.of<CentroidWander>().sigma = 1e-4;
     filter_settings.processes.of<BrightnessOffset>().sigma = 1e-4;
