@@ -271,6 +271,17 @@ Override parse_assignment(const std::string& assignment) {
   return set;
 }
 
+/// Replaces a labelled element by a table, which keeps the label unless it states one.
+void replace_element(toml::table& element, const std::string& label, const Override& set) {
+  toml::table parsed = parse_value(set);
+  toml::table* const whole = parsed["value"].as_table();
+  if (whole == nullptr)
+    set.refuse("a path that ends too early",
+               "spacecraft.NAME.KEY=value or waypoint.INDEX.KEY=value, or a table as value");
+  element.get(label)->visit([&](const auto& kept) { whole->insert(label, kept); });
+  element = std::move(*whole);
+}
+
 }  // namespace
 
 void apply_override(toml::table& document, const std::string& assignment) {
@@ -281,9 +292,8 @@ void apply_override(toml::table& document, const std::string& assignment) {
   std::size_t next = 0;
   const auto* const labelled = std::ranges::find(kLabelledArrays, path.front(), &LabelledArray::name);
   if (labelled != kLabelledArrays.end() && path.size() > 1) {
-    if (path.size() == 2)
-      set.refuse("a path that ends too early", "spacecraft.NAME.KEY=value or waypoint.INDEX.KEY=value");
     table = &element_by_label(document, set, path[0], labelled->label, path[1]);
+    if (path.size() == 2) return replace_element(*table, std::string(labelled->label), set);
     next = 2;
   }
   for (; next + 1 < path.size(); ++next) {

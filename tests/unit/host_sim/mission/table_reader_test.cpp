@@ -174,6 +174,12 @@ TEST(Overrides, TextNeedsNoQuotesButMayHaveThem) {
   EXPECT_EQ(small_mission({"mission.description="}).description, "");
 }
 
+TEST(Overrides, ReplaceALabelledElementAsAWhole) {
+  const Mission mission = small_mission({"waypoint.1={time_h=4, a_roe_m=[1, 2, 3, 4, 5, 6]}"});
+  EXPECT_EQ(mission.find_waypoint(1)->time - mission.epoch, fsw::duration_of_seconds(4 * 3600));
+  EXPECT_EQ(mission.find_waypoint(1)->a_roe_m(0), 1.0);
+}
+
 TEST(Overrides, WholeTablesAndArraysAreValuesToo) {
   const Mission mission = small_mission({"waypoint.1.a_roe_m=[1, 2, 3, 4, 5, 6]",
                                          "links.board.latency={distribution=\"uniform\", min_s=0.1, max_s=0.2}"});
@@ -216,7 +222,8 @@ TEST(Overrides, AreCheckedLikeTheFileAndNamedInTheMessage) {
        "spacecraft.moon.mass_kg: found no spacecraft whose name is \"moon\"; accepted: spacecraft.servicer or target"},
       {"waypoint.9.time_h=1", "waypoint.9.time_h: found no waypoint whose index is \"9\"; accepted: waypoint.0 or 1"},
       {"waypoint.1=1",
-       "waypoint.1: found a path that ends too early; accepted: spacecraft.NAME.KEY=value or waypoint.INDEX.KEY=value"},
+       "waypoint.1: found a path that ends too early; accepted: spacecraft.NAME.KEY=value or waypoint.INDEX.KEY=value, "
+       "or a table as value"},
       {"mission.duration_h.unit=h",
        "mission.duration_h.unit: found a path through duration_h, which is the number 2; accepted: a path through "
        "tables"},
