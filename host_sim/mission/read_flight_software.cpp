@@ -5,6 +5,7 @@
 #include "host_sim/mission/mission.h"
 #include "host_sim/mission/process_noise_keys.h"
 #include "host_sim/mission/read_sections.h"
+#include "host_sim/mission/rtn_waypoints.h"
 
 namespace vbar::mission {
 
@@ -64,8 +65,11 @@ Waypoint read_waypoint(const TableReader& section, const Mission& mission) {
   Waypoint waypoint;
   waypoint.index = static_cast<int>(section.integer("index", 0, 9999));
   waypoint.time = mission.epoch + section.span("time_h", kHour_s, from_to(0.0, kLongestMission_h));
-  const auto a_roe_m = section.six_numbers("a_roe_m", from_to(-kLargestARoe_m, kLargestARoe_m));
-  waypoint.a_roe_m = Eigen::Map<const fsw::Vector6>(a_roe_m.data());
+  // Of a state in RTN the elements follow when all spacecraft are known.
+  if (!target_in_rtn(section)) {
+    const auto a_roe_m = section.six_numbers("a_roe_m", from_to(-kLargestARoe_m, kLargestARoe_m));
+    waypoint.a_roe_m = Eigen::Map<const fsw::Vector6>(a_roe_m.data());
+  }
   waypoint.solver = section.choice<Solver>("solver", kSolvers, Waypoint{}.solver);
   if (section.has("keep_out_radius_m"))
     waypoint.keep_out_radius_m = section.number("keep_out_radius_m", from_to(0.0, 1e5));
