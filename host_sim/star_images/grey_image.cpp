@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
-#include <iterator>
 #include <map>
+#include <optional>
 #include <string_view>
 
 #include <fmt/core.h>
 
 #include "fsw/vision/imaging/image.h"
+#include "host_sim/files/output_file.h"
 
 namespace vbar::star_images {
 namespace {
@@ -191,10 +191,9 @@ GreyImage grey_image_of(const std::string& bytes, const std::string& file) {
 }
 
 GreyImage read_grey_image(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream) throw ImageRefused(file.string() + ": cannot be read");
-  return grey_image_of(bytes, file.string());
+  const std::optional<std::string> bytes = files::contents_of(file);
+  if (!bytes) throw ImageRefused(file.string() + ": cannot be read");
+  return grey_image_of(*bytes, file.string());
 }
 
 }  // namespace vbar::star_images

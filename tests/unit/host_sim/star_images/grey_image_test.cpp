@@ -91,6 +91,10 @@ TEST(GreyImage, RefusalsNameWhatWasFoundAndWhatIsAccepted) {
             std::string::npos);
 }
 
+TEST(GreyImage, AFolderCannotBeRead) {
+  EXPECT_THROW(static_cast<void>(read_grey_image(".")), ImageRefused);
+}
+
 TEST(GreyImage, EveryTruncationIsRefused) {
   const std::string tiff = TiffMaker{}.bytes(std::string(2 * kSide * kSide, '\1'));
   const std::string map = pgm(255, std::string(kSide * kSide, '\1'));
