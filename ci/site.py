@@ -19,7 +19,7 @@ CHAPTERS = {
     "Campaigns": ["docs/campaigns.md", "docs/campaign_page.md"],
     "Your flight code": ["docs/own_flight_code.md", "docs/external_sources.md", "docs/own_target.md", "docs/wire_formats.md", "docs/board_bringup.md"],
     "Testbeds": ["docs/grand.md", "docs/generator_protocols.md", "docs/protocol_sources.md", "docs/optical_stimulator.md", "docs/tron.md", "docs/testbeds.md"],
-    "How far to trust it": ["docs/verification.md", "docs/requirements.md", "docs/bound.md", "docs/accuracy.md"],
+    "How far to trust it": ["docs/verification.md", "docs/requirements.md", "docs/bound.md", "docs/accuracy.md", "docs/flight.md"],
     "Source": ["docs/tour.md", "docs/recipes.md", "docs/keypoint_network.md", "CONTRIBUTING.md", "CHANGELOG.md"],
 }  # the headers' page is added to the last chapter
 LINK = re.compile(r"(\]\()([^)#\s]+)((?:#[^)\s]*)?\))")

@@ -21,6 +21,7 @@
 #include "host_sim/cli/build_info.h"
 #include "host_sim/cli/command_line.h"
 #include "host_sim/cli/commands.h"
+#include "host_sim/cli/stars_command.h"
 #include "host_sim/files/error_lines.h"
 #include "host_sim/files/own_program.h"
 #include "host_sim/mission/mission_error.h"
@@ -55,6 +56,31 @@ void add_resume(CLI::App& command, ResumeOptions& resume) {
       ->needs(at);
   command.add_flag("--trust", resume.trust, "use a library, device or address that the run folder names");
   command.add_flag("--quiet", resume.quiet, kQuietHelp);
+}
+
+void add_stars(CLI::App& command, StarsOptions& stars) {
+  command.add_option("image", stars.images, "images of stars: PGM or TIFF, one grey value a pixel")->required();
+  command.add_option("--focal-length-px", stars.focal_length_px, "focal length over the pitch of the pixels, to 0.5 %")
+      ->required()
+      ->check(number_from(1.0));
+  command
+      .add_option("--search-percent", stars.search_percent,
+                  "try focal lengths that differ by up to this from the given one")
+      ->check(CLI::Range(0.0, 20.0));
+  command.add_option("--principal-point-px", stars.principal_point_px, "x and y; middle of the image unless given")
+      ->expected(2);
+  command.add_option("--distortion", stars.distortion, "Brown-Conrady k1 k2 p1 p2 k3; 0 unless given")->expected(5);
+  command
+      .add_option("--centroid-floor-px", stars.centroid_floor_px,
+                  "error of centroids and lens beside that by noise, 1 sigma (0.3)")
+      ->check(CLI::Range(0.01, 10.0));
+  command.add_option("--detection-sigmas", stars.detection_sigmas, "threshold of an object, sigmas of noise (5)")
+      ->check(CLI::Range(2.0, 30.0));
+  command.add_option("--utc", stars.utc,
+                     "time of the images, for aberration by the Earth's motion: without, up to 20.5 "
+                     "arcsec of the attitude");
+  command.add_flag("--calibrate", stars.calibrate, "fit focal length and distortion to the stars of all images");
+  command.add_option("--csv", stars.table, "file for the stars: pixel, Hipparcos number, residual");
 }
 
 constexpr const char* kOtherProgramsHelp =
@@ -273,6 +299,12 @@ int execute(int argc, char** argv) {
   CLI::Option* explained_option = explain_app->add_option("word", explained, "one of them; all are listed without it");
   explain_app->add_flag("--markdown", word_page, "all of them, as docs/words.md")->excludes(explained_option);
   explain_app->callback([&] { exit_code = explain_command(explained, word_page); });
+
+  StarsOptions stars;
+  CLI::App* stars_app = program.add_subcommand(
+      "stars", "attitude of a camera by its images of stars, and its focal length and distortion");
+  add_stars(*stars_app, stars);
+  stars_app->callback([&] { exit_code = stars_command(stars); });
 
   NewArticleOptions article;
   CLI::App* article_app = program.add_subcommand("new-article", "create a project of your own flight software");

@@ -2,8 +2,7 @@
 
 #include <stdexcept>
 
-#include <erfa.h>
-
+#include "host_sim/truth/earth/earth_velocity.h"
 #include "host_sim/truth/earth/sun_moon.h"
 #include "host_sim/truth/earth/time_scales.h"
 #include "host_sim/truth/forces/radiation_pressure.h"
@@ -13,15 +12,6 @@ namespace {
 
 constexpr double kJ2000 = 2451545.0;
 constexpr double kDaysPerJulianYear = 365.25;
-
-/// Barycentric velocity, m/s. The series asks for TDB; TT differs by less than 2 ms, in which the velocity rotates by
-/// 4e-10.
-fsw::Vector3 earth_velocity_bcrs(truth::JulianDate tt) {
-  double heliocentric[2][3], barycentric[2][3];
-  static_cast<void>(eraEpv00(tt.day, tt.fraction, heliocentric, barycentric));  // warns of dates outside 1900 to 2100
-  const double scale = truth::kAstronomicalUnit / truth::kSecondsPerDay;
-  return {scale * barycentric[1][0], scale * barycentric[1][1], scale * barycentric[1][2]};
-}
 
 }  // namespace
 
@@ -48,7 +38,7 @@ Exposure exposure_of_truth(const CameraMount& mount, const TruthSnapshot& truth,
   exposure.camera_velocity_eci = own->orbit.velocity_eci + q_eci_body * rate_body.cross(mount.position_body);
   const truth::JulianDate tt = truth::tt_of(truth.time);
   const truth::SunMoon sky = truth::sun_moon_series(tt);
-  exposure.earth_velocity_bcrs = earth_velocity_bcrs(tt);
+  exposure.earth_velocity_bcrs = truth::earth_velocity_bcrs(tt);
   exposure.sun_eci = sky.sun_eci;
   exposure.moon_eci = sky.moon_eci;
   exposure.years_since_j2000 = ((tt.day - kJ2000) + tt.fraction) / kDaysPerJulianYear;
