@@ -482,7 +482,7 @@ export class Scene {
     if (this.estimateLabel.position.distanceTo(this.target.position) < 12 * this.#metresPerPixel(this.target.position)) this.estimateLabel.visible = false;
     const keepOut = this.keepOut.visible ? `, keep-out ${withUnit(this.keepOutRadius, 'm', 3)}` : '';
     if (this.through) this.gridLabel.textContent = `through ${this.eye.camera.name} of the ${this.servicer.userData.name}${this.keypoints.geometry.attributes.position?.count ? ', keypoints that navigation used of the last image (green)' : ''}`;
-    else this.gridLabel.textContent = `RTN ${this.options.axes}, about the ${this.options.centre} · grid ${this.spacing >= 1000 ? `${this.spacing / 1000} km` : `${+this.spacing.toPrecision(3)} m`}${keepOut}`;
+    else this.gridLabel.textContent = `RTN ${this.options.axes}, about ${this.runs[0].isPropagation ? '' : 'the '}${this[this.options.centre].userData.name} · grid ${this.spacing >= 1000 ? `${this.spacing / 1000} km` : `${+this.spacing.toPrecision(3)} m`}${keepOut}`;
   }
 
   #placeLabels() {
