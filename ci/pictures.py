@@ -39,7 +39,7 @@ RUNS = {
     "experiment1_hil": ["experiment1_hil", "--set", "mission.duration_h=0.5",
                         "--set", "testbed.optical_stimulator.calibration=stimulator_calibration/calibration.toml"],
     "experiment2_hil": ["experiment2_hil", "--set", "mission.duration_h=0.42"],
-    "tutorial": ["gnss.toml"],
+    "tutorial": ["tutorial_missions/gnss.toml"],
 }
 CALIBRATION = "stimulator_calibration"  # of the emulated Optical Stimulator, which experiment1_hil needs
 CAMPAIGN = """[campaign]
@@ -167,8 +167,9 @@ class Maker:
             if name == "experiment1_hil":
                 self.run_folder(CALIBRATION)
             if name == "tutorial":
+                (self.runs / "tutorial_missions").mkdir(exist_ok=True)
                 for file, text in re.findall(r"^File `([^`]+)`:\n\n```toml\n(.*?)^```$", (ROOT / "docs" / "tutorial.md").read_text(), re.M | re.S):
-                    (self.runs / file).write_text(text)
+                    (self.runs / "tutorial_missions" / file).write_text(text)
             self.vbar("run", *RUNS[name], "--out", folder, "--force", "--quiet", codes=COMPLETE)
         return folder
 

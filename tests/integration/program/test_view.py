@@ -300,6 +300,15 @@ class ViewPropagation(unittest.TestCase):
             self.assertEqual(page.errors, [])
 
 
+kContrast = """(() => {
+  const rgb = (text) => text.match(/[0-9.]+/g).slice(0, 3).map((x) => { const c = x / 255; return c <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4; });
+  const light = (text) => { const [r, g, b] = rgb(text); return 0.2126 * r + 0.7152 * g + 0.0722 * b; };
+  const ground = light(getComputedStyle(document.body).backgroundColor);
+  return Math.min(...[...document.querySelectorAll('.numbers th, .numbers td, .clock, .facts dt, .facts dd, .u-title')].map((e) => {
+    const ink = light(getComputedStyle(e).color);
+    return (Math.max(ink, ground) + 0.05) / (Math.min(ink, ground) + 0.05); })); })()"""
+
+
 class ViewInBrowser(unittest.TestCase):
     """The page in Chromium (Debian's package chromium); skipped where there is none."""
 
@@ -414,6 +423,54 @@ class ViewInBrowser(unittest.TestCase):
             page.open(self.address)
             self.assertIn("WebGL", page.evaluate("document.querySelector('.scene').innerText"))
             self.assertGreater(page.evaluate("document.querySelectorAll('.uplot').length"), 3)
+
+    def test_keyboard_alone(self):
+        """Tab reaches controls, views, time bar and tabs; keys act on what has the focus, and the focus is visible."""
+        with browser.browser() as page:
+            page.show()
+            page.open(self.address)
+
+            def press(key, code, **more):
+                for kind in ("keyDown", "keyUp"):
+                    page.call("Input.dispatchKeyEvent", type=kind, key=key, windowsVirtualKeyCode=code, **more)
+
+            reached = []
+            for _ in range(60):
+                press("Tab", 9)
+                focus = page.evaluate("(() => { const e = document.activeElement; return [e.className || e.innerText || e.title, getComputedStyle(e).outlineStyle]; })()")
+                reached.append(focus[0])
+                self.assertNotEqual(focus[1], "none", focus)
+                if focus[0] == "ROE":
+                    break
+            for name in ("play", "time", "timeBar", "Target", "Navigation", "ROE"):
+                self.assertIn(name, reached)
+            press("Enter", 13, text="\r")
+            self.assertEqual(page.evaluate("document.querySelector('[role=tab][aria-selected=true]').innerText"), "ROE")
+            page.evaluate("document.querySelector('.timeBar').focus()")
+            press("End", 35)
+            self.assertEqual(page.evaluate("vbarView.cursor.t === vbarView.cursor.end"), True)
+            press("Home", 36)
+            self.assertEqual(page.evaluate("vbarView.cursor.t === vbarView.cursor.start"), True)
+            press("3", 51, text="3")
+            self.assertEqual(page.evaluate("vbarView.scene.options.view"), "target")
+            self.assertEqual(page.errors, [])
+
+    def test_nothing_is_cut_at_1280_by_720_and_on_paper(self):
+        with browser.browser() as page:
+            for dark in (False, True):
+                page.show((1280, 720), dark=dark)
+                page.open(self.address)
+                self.assertEqual(page.evaluate("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]"), [1280, 720])
+                # Of text on its ground: WCAG 2.1, 1.4.3 asks for 4.5.
+                self.assertGreater(page.evaluate(kContrast), 4.5, "dark" if dark else "light")
+            page.show((794, 1123))  # A4 at 96 pixels an inch
+            page.call("Emulation.setEmulatedMedia", media="print")
+            self.assertEqual(page.evaluate("getComputedStyle(document.querySelector('.controls')).display"), "none")
+            width = page.evaluate("document.documentElement.clientWidth")
+            self.assertEqual(page.evaluate("[document.documentElement.scrollWidth, document.querySelector('.scene').clientWidth]"), [width, width])
+            self.assertGreater(page.evaluate("document.documentElement.scrollHeight"), 1123)  # plots below each other, none behind a scroll bar
+            self.assertEqual(page.evaluate("getComputedStyle(document.querySelector('.plots')).overflow"), "visible")
+            self.assertEqual(page.errors, [])
 
     def test_keys(self):
         with browser.browser() as page:

@@ -46,7 +46,7 @@ export function valuesAt(run, t) {
   const word = (name) => estimate(name, 'cells');
   const words = [['Mode', word('mode')], ['Solver', word('active_solver')], ['Source', word('navigation_source')],
                  ...aidsAt(run, t), ['Image', at('images')('status', 'cells')], ['Pose', at('poses')('status', 'cells')],
-                 ['Next waypoint', word('waypoint_index')], ['Burns planned', word('planned_burns')], ['Delta-v so far', estimate('commanded_dv_mps') === undefined ? undefined : withUnit(estimate('commanded_dv_mps'), 'm/s')],
+                 ['Next waypoint', Number(word('waypoint_index')) < 0 ? 'none' : word('waypoint_index')], ['Burns planned', word('planned_burns')], ['Delta-v so far', estimate('commanded_dv_mps') === undefined ? undefined : withUnit(estimate('commanded_dv_mps'), 'm/s')],
                  ['Sunlight', Number.isNaN(value(sunlight('servicer_sunlit'))) ? undefined : `${number(100 * value(sunlight('servicer_sunlit')), 3)} %`],
                  ['Faults present', at('telemetry_health')('faults_present', 'cells')]];
   words.push(...orbitsAt(run, t));

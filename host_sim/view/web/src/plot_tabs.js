@@ -3,7 +3,7 @@
 
 import { cross, dot, norm } from './frames.js';
 import { indexAt } from './run_data.js';
-import { number, unitOf } from './units.js';
+import { number, unitOf, withoutUnit } from './units.js';
 
 const kAxes = ['r', 't', 'n'], kElements = ['da', 'dlambda', 'dex', 'dey', 'dix', 'diy'];
 const kTrue = { width: 3.5 };  // under the estimate, and visible beside it
@@ -106,7 +106,7 @@ function residualPlots(run) {
 function columnPlots(run, tableName, names) {
   const table = run.table(tableName);
   if (!table) return [];
-  return names.filter((name) => table.column(name)).map((name) => ({ title: name, unit: unitOf(name), curves: column(run, tableName, name, name, 'c0', { step: true }) }));
+  return names.filter((name) => table.column(name)).map((name) => ({ title: withoutUnit(name).replaceAll('_', ' '), unit: unitOf(name), curves: column(run, tableName, name, withoutUnit(name).replaceAll('_', ' '), 'c0', { step: true }) }));
 }
 
 function attitudePlots(run) {
@@ -197,9 +197,9 @@ export function selectedPlots(runs, ids) {
   return ids.flatMap((id) => {
     const curves = runs.flatMap((run, k) => {
       const found = run.column(id);
-      return found?.isNumeric && found.table.time ? [curve(k === 0 ? found.name : `${found.name}, ${run.name}`, `c${k % 6}`, found.table.time, found.numbers, { dash: k > 0 })] : [];
+      return found?.isNumeric && found.table.time ? [curve(k === 0 ? withoutUnit(found.name) : `${withoutUnit(found.name)}, ${run.name}`, `c${k % 6}`, found.table.time, found.numbers, { dash: k > 0 })] : [];
     });
-    return curves.length ? [{ title: id, unit: unitOf(id), curves }] : [];
+    return curves.length ? [{ title: withoutUnit(id), unit: unitOf(id), curves }] : [];
   });
 }
 

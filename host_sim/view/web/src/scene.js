@@ -487,6 +487,10 @@ export class Scene {
 
   #placeLabels() {
     const { clientWidth: width, clientHeight: height } = this.element;
+    const [above, below] = [this.servicerLabel, this.targetLabel].map((label) => label.position.clone().project(this.camera));
+    // Names of spacecraft that are beside each other stand one below the other.
+    const isNear = Math.abs(above.x - below.x) * width < 340 && Math.abs(above.y - below.y) * height < 28;
+    this.targetLabel.element.style.marginTop = isNear ? '15px' : '';
     for (const { element, position, visible, kind } of this.labels) {
       const p = position.clone().project(this.camera);
       const shown = visible && !(this.through && (kind === 'waypoint' || element === this.servicerLabel.element)) && p.z < 1 && Math.abs(p.x) < 1.05 && Math.abs(p.y) < 1.05;
