@@ -250,7 +250,8 @@ class Maker:
         page.open((folder / "view.html").as_uri())
         page.evaluate("""document.head.append(Object.assign(document.createElement('style'), {textContent: `
           .plotSection, .picture, .side, .views, header h1, header .status, .controls { display: none !important; }
-          .upper { grid-template-columns: 1fr !important; } #page { grid-template-rows: auto 1fr auto 0 !important; }`}))""")
+          html { overflow: hidden; } .scene { height: auto !important; } .upper { grid-template-columns: 1fr !important; }
+          #page { display: grid !important; height: 100vh !important; grid-template-rows: auto 1fr auto 0 !important; }`}))""")
         count = round((picture.end_h - picture.begin_h) * 3600 / picture.step_s)
         with tempfile.TemporaryDirectory() as frames:
             for view in ("camera", "both"):
@@ -281,7 +282,7 @@ def origin_of(folder):
     if (folder / "propagation.json").exists():
         return {"mission": json.loads((folder / "propagation.json").read_text())["mission"], "propagated": True, "commit": head()}
     if (folder / "calibration.toml").exists():
-        return {"calibration": "of the emulated Optical Stimulator, seed 1", "commit": head()}
+        return {"mission": "experiment1_hil", "calibrated": True, "commit": head()}
     if not (folder / "summary.json").exists():
         campaign = json.loads((folder / "campaign.json").read_text())
         return {"mission": campaign["name"], "commit": campaign["commit"]}
