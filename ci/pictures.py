@@ -16,6 +16,7 @@ import html
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -35,11 +36,30 @@ RUNS = {
     "experiment2-seed-2": ["experiment2", "--set", "mission.seed=2"],
     "experiment3": ["experiment3"],
     "experiment3_grand": ["experiment3_grand"],
+    "experiment1_hil": ["experiment1_hil", "--set", "mission.duration_h=0.5",
+                        "--set", "testbed.optical_stimulator.calibration=stimulator_calibration/calibration.toml"],
+    "experiment2_hil": ["experiment2_hil", "--set", "mission.duration_h=0.42"],
+    "tutorial": ["tutorial_missions/gnss.toml"],
 }
+CALIBRATION = "stimulator_calibration"  # of the emulated Optical Stimulator, which experiment1_hil needs
 CAMPAIGN = """[campaign]
 name = "experiment3"
 mission = "{root}/missions/experiment3.toml"
 seeds = "1..40"
+seed = 7
+keep = "all"
+
+[[disperse]]
+key = "spacecraft.servicer.actuators.thruster.magnitude_error_percent"
+distribution = "uniform"
+low = 0.0
+high = 5.0
+
+[[disperse]]
+key = "gnss.clock.h0_s"
+distribution = "log_uniform"
+low = 1e-21
+high = 1e-18
 """
 PAGE = (1280, 720)
 
@@ -91,6 +111,9 @@ PICTURES = {
     "experiment2.png": Page(["experiment2"], "report.html", heading="Mission at a glance"),
     "experiment3.png": Page(["experiment3"], "report.html", heading="Mission at a glance"),
     "campaign.png": Page(["campaign"], "campaign.html", size=(1280, 1000)),
+    "campaign_flights.png": Page(["campaign"], "campaign.html", heading="Flights over time"),
+    "comparison.png": Page(["experiment2", "experiment2-seed-2"], "comparison.html", heading="Flights over each other"),
+    "propagation.png": Page(["propagation"], address="t=20h&tab=relative&view=whole"),
     "view.png": Page(["experiment2"], address="t=39.75h"),
     "view_lost.png": Page(["experiment2"], address="t=40.6889h&tab=sensors", pointer=("keypoints", 40.75)),
     "view_burn.png": Page(["experiment1"], address="t=2.0633h&tab=burns", pointer=("burns", 2.0631)),
@@ -99,6 +122,10 @@ PICTURES = {
     "view_picture.png": Page(["experiment2"], address="t=39.7h&picture=large"),
     "view_difference.png": Page(["experiment2", "experiment2-seed-2"], address="t=39.7h&tab=difference"),
     "grand.png": Page(["experiment3_grand"], address="t=39.5h&tab=sensors"),
+    "optical_stimulator.png": Page(["experiment1_hil"], address="t=0.45h&tab=sensors&picture=large"),
+    "optical_stimulator_calibration.png": Page([CALIBRATION], "calibration.html", heading="Residuals"),
+    "tron.png": Page(["experiment2_hil"], address="t=39.4h&tab=sensors&picture=large"),
+    "tutorial.png": Page(["tutorial"], address="t=5h&view=whole"),
     "winged_box_keypoints.png": Drawing("winged_box", "vbar_target_keypoints", size=(1020, 690)),
 }
 
@@ -124,7 +151,25 @@ class Maker:
                 self.vbar("campaign", "run", "campaign.toml", "--out", folder, "--jobs", "1", "--quiet", codes=(0, 75))
                 self.vbar("campaign", "report", folder)
             return folder
+        if name == CALIBRATION:
+            if not (folder / "calibration.html").exists():
+                folder.mkdir(exist_ok=True)
+                subprocess.run([self.build / "vbar_os_calibrate", "--quick", "--seed", "1", "--out", folder / "calibration.toml", "--bench",
+                                f"{self.build}/vbar_os_bench {{data}}/benches/optical_stimulator.toml --directory {{directory}} --seed {{seed}}"],
+                               env=self.environment, check=True, capture_output=True)
+            return folder
+        if name == "propagation":
+            if not (folder / "view.html").exists():
+                self.vbar("propagate", "ideal_navigation", "--out", folder, "--quiet")
+                self.vbar("view", folder)
+            return folder
         if not (folder / "view.html").exists():
+            if name == "experiment1_hil":
+                self.run_folder(CALIBRATION)
+            if name == "tutorial":
+                (self.runs / "tutorial_missions").mkdir(exist_ok=True)
+                for file, text in re.findall(r"^File `([^`]+)`:\n\n```toml\n(.*?)^```$", (ROOT / "docs" / "tutorial.md").read_text(), re.M | re.S):
+                    (self.runs / "tutorial_missions" / file).write_text(text)
             self.vbar("run", *RUNS[name], "--out", folder, "--force", "--quiet", codes=COMPLETE)
         return folder
 
@@ -133,10 +178,10 @@ class Maker:
         folders = [self.run_folder(run) for run in picture.runs]
         file = folders[0] / picture.file
         if len(folders) > 1:
-            file = self.runs / "both.html"
-            self.vbar("view", *folders, "--out", file)
+            file = self.runs / ("both.html" if picture.file == "view.html" else picture.file)
+            self.vbar("view" if picture.file == "view.html" else "report", *folders, "--out", file)
         page.show(picture.size)
-        if file.suffix == ".html" and (file.name == "view.html" or len(folders) > 1):
+        if file.name in ("view.html", "both.html"):
             page.open(f"{file.as_uri()}#{picture.address}")
         else:
             page.call("Page.navigate", url=file.as_uri())
@@ -205,7 +250,8 @@ class Maker:
         page.open((folder / "view.html").as_uri())
         page.evaluate("""document.head.append(Object.assign(document.createElement('style'), {textContent: `
           .plotSection, .picture, .side, .views, header h1, header .status, .controls { display: none !important; }
-          .upper { grid-template-columns: 1fr !important; } #page { grid-template-rows: auto 1fr auto 0 !important; }`}))""")
+          html { overflow: hidden; } .scene { height: auto !important; } .upper { grid-template-columns: 1fr !important; }
+          #page { display: grid !important; height: 100vh !important; grid-template-rows: auto 1fr auto 0 !important; }`}))""")
         count = round((picture.end_h - picture.begin_h) * 3600 / picture.step_s)
         with tempfile.TemporaryDirectory() as frames:
             for view in ("camera", "both"):
@@ -232,7 +278,11 @@ class Maker:
 
 
 def origin_of(folder):
-    """What flew: from the summary of a run, or of the first case of a campaign."""
+    """What flew: from the summary of a run, or of the first case of a campaign; of other folders what made them, now."""
+    if (folder / "propagation.json").exists():
+        return {"mission": json.loads((folder / "propagation.json").read_text())["mission"], "propagated": True, "commit": head()}
+    if (folder / "calibration.toml").exists():
+        return {"mission": "experiment1_hil", "calibrated": True, "commit": head()}
     if not (folder / "summary.json").exists():
         campaign = json.loads((folder / "campaign.json").read_text())
         return {"mission": campaign["name"], "commit": campaign["commit"]}

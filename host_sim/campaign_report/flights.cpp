@@ -117,7 +117,8 @@ std::vector<double> medians(const std::vector<std::vector<double>>& of_cases) {
   return values;
 }
 
-Plot overlay(const std::vector<Flight>& flights, std::vector<Point> Flight::*curve, const char* title, bool largest) {
+Plot overlay(const std::vector<Flight>& flights, std::vector<Point> Flight::*curve, const char* title,
+             const char* quantity, bool largest) {
   report::Range hours{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()};
   for (const Flight& flight : flights)
     if (!flight.range.empty())
@@ -126,7 +127,7 @@ Plot overlay(const std::vector<Flight>& flights, std::vector<Point> Flight::*cur
   Plot plot;
   plot.title = title;
   plot.x = {.name = "time", .unit = report::Unit::kHours, .range = hours};
-  plot.y = {.name = title, .unit = report::Unit::kMetres, .logarithmic = true};
+  plot.y = {.name = quantity, .unit = report::Unit::kMetres, .logarithmic = true};
   plot.height = 260.0;
   std::vector<std::vector<double>> of_cases;
   for (const Flight& flight : flights) {
@@ -159,8 +160,9 @@ report::Section flight_section(const Content& content) {
       "intervals of time.</p>\n",
       count_text(content.flights.size(), "complete case", "complete cases"), kIntervals);
   return {"Flights over time",
-          note + report::plot_rows(2, {overlay(content.flights, &Flight::error, "error of the relative position", true),
-                                       overlay(content.flights, &Flight::range, "range to the target", false)}),
+          note + report::plot_rows(
+                     2, {overlay(content.flights, &Flight::error, "Error of the relative position", "error", true),
+                         overlay(content.flights, &Flight::range, "Range to the target", "range", false)}),
           {"runs"}};
 }
 

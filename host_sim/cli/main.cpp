@@ -254,7 +254,7 @@ int execute(int argc, char** argv) {
   CLI::App* view_app = program.add_subcommand(
       "view",
       "write the page on which a run is watched: scene, plots and tables over time; more runs are drawn beside it");
-  view_app->add_option("run", view.run_folders, "run folders")->required();
+  view_app->add_option("run", view.run_folders, "run folders, or the folder of one propagation")->required();
   view_app->add_option("--out", view.out,
                        "file of the page; view.html in the run folder, or beside the first of several, unless given");
   view_app->callback([&] { exit_code = view_command(view); });

@@ -23,6 +23,7 @@
 #include "host_sim/sensors/installed_testbeds.h"
 #include "host_sim/simulation/exit_codes.h"
 #include "host_sim/simulation/recorded_mission.h"
+#include "host_sim/view/propagation_page.h"
 #include "host_sim/view/view_page.h"
 
 namespace vbar::app {
@@ -85,8 +86,23 @@ int report_command(const ReportOptions& options) {
   return fail_if_different && !std::ranges::all_of(runs, same_as_first) ? kDifferent : kDone;
 }
 
+namespace {
+
+int view_propagation(const std::filesystem::path& folder, const ViewOptions& options) {
+  if (options.run_folders.size() > 1)
+    throw Refused(fmt::format("{}: holds a propagation; accepted: one propagation alone, or runs", folder.string()));
+  const std::filesystem::path file = options.out.empty() ? report::view_file(folder) : options.out;
+  files::replace_text_file(file, view::propagation_page(folder, report::run_names({folder}).front()));
+  fmt::print("view    {}\n", file.string());
+  return kDone;
+}
+
+}  // namespace
+
 int view_command(const ViewOptions& options) {
   if (view::page_template().empty()) throw Refused(view::kHowToGetPage);
+  const auto propagation = std::ranges::find_if(options.run_folders, view::is_propagation);
+  if (propagation != options.run_folders.end()) return view_propagation(*propagation, options);
   const std::vector<std::string> names = report::run_names(options.run_folders);
   std::deque<report::RunRecord> records;
   std::deque<std::optional<mission::Mission>> missions;

@@ -12,6 +12,7 @@
 #include "host_sim/files/output_file.h"
 #include "host_sim/report/csv_table.h"
 #include "host_sim/report/plots/number_text.h"
+#include "host_sim/report/run_folder.h"
 #include "host_sim/truth/earth/time_scales.h"
 
 namespace vbar::report {
@@ -206,6 +207,7 @@ void clear(const fs::path& folder) {
     fs::remove(folder / name);
     fs::remove(files::PartialFile::part_of(folder / name));
   }
+  fs::remove(view_file(folder));
 }
 
 }  // namespace

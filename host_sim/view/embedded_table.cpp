@@ -180,8 +180,9 @@ void TablesInPage::add(const CellTable& table, const std::vector<std::size_t>& r
   std::string text = packed(data);
   size_ += text.size();
   tables_.push_back({{"file", table.file},
+                     {"name", table.name},
                      {"rows", rows.size()},
-                     {"rows_of_file", table.rows()},
+                     {"rows_of_file", std::max(table.rows(), table.rows_of_file)},
                      {"columns", std::move(columns)},
                      {"data", std::move(text)}});
 }

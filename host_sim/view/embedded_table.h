@@ -28,6 +28,8 @@ struct CellColumn {
 struct CellTable {
   std::string file;  ///< of the run folder; empty: the table is in the page only
   std::vector<CellColumn> columns;
+  std::string name{};            ///< of a table without a file
+  std::size_t rows_of_file = 0;  ///< if these are not all rows of the file, their number
 
   [[nodiscard]] std::size_t rows() const { return columns.empty() ? 0 : columns.front().cells.size(); }
 };

@@ -149,7 +149,8 @@ CellTable sunlight_of(const mission::Mission& mission, const report::RunRecord& 
                    {"sun_eci_x", "unit vector from the Earth to the Sun", {}},
                    {"sun_eci_y", "unit vector from the Earth to the Sun", {}},
                    {"sun_eci_z", "unit vector from the Earth to the Sun", {}},
-                   {"servicer_sunlit", "fraction of the Sun's disk that the servicer sees", {}}}};
+                   {"servicer_sunlit", "fraction of the Sun's disk that the servicer sees", {}}},
+                  "sunlight"};
   truth::SunMoonInterpolator ephemeris;
   const std::size_t stride = 1 + record.truth.size() / kMaxInstants;
   for (std::size_t k = 0; k < record.truth.size(); k += stride) {

@@ -114,18 +114,22 @@ std::string_view page_template() {
   return {vbar_view_page_begin, static_cast<std::size_t>(vbar_view_page_end - vbar_view_page_begin)};
 }
 
-std::string view_page(std::span<const ViewedRun> runs, const std::filesystem::path& data_directory) {
+std::string filled_page(std::string_view title, const json& runs) {
   if (page_template().empty()) throw std::runtime_error(kHowToGetPage);
+  std::string page(page_template());
+  put(page, "@TITLE@", report::escaped(title));
+  put(page, "@RUNS@", script_text(runs));
+  return page;
+}
+
+std::string view_page(std::span<const ViewedRun> runs, const std::filesystem::path& data_directory) {
   std::string names;
   json data = json::array();
   for (const ViewedRun& run : runs) {
     names += (names.empty() ? "" : " | ") + run.name;
     data.push_back(json_of(run, data_directory));
   }
-  std::string page(page_template());
-  put(page, "@TITLE@", report::escaped(names));
-  put(page, "@RUNS@", script_text(data));
-  return page;
+  return filled_page(names, data);
 }
 
 void write_view(const std::filesystem::path& file, std::span<const ViewedRun> runs,

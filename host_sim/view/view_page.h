@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "host_sim/mission/mission.h"
 #include "host_sim/report/run_record.h"
 
@@ -15,6 +17,9 @@ namespace vbar::view {
 
 /// Returns the page without data; empty in a build that was configured without the programs of the page.
 [[nodiscard]] std::string_view page_template();
+
+/// Returns the page with a title and the JSON of its runs. Throws std::runtime_error without page_template().
+[[nodiscard]] std::string filled_page(std::string_view title, const nlohmann::json& runs);
 
 /// How a build comes to contain the page, for messages.
 inline constexpr const char* kHowToGetPage =

@@ -12,6 +12,8 @@ namespace {
 
 using fsw::Vector2;
 
+constexpr const char* kTitle = "Calibration of the Optical Stimulator";
+
 std::string with_sigma(const Figure& figure) {
   return fmt::format("{:.6g} ± {:.2g}", figure.value, figure.sigma);
 }
@@ -70,7 +72,8 @@ std::string residual_map(const ProcedureResult& result, int width, int height) {
         colour_of(arcsec), arcsec, residual.camera_px.x(), residual.camera_px.y(), tip.x(), tip.y());
   }
   return svg +
-         "</svg><p>Blue: none; red: 5 arcsec and more. An arrow of 12 pixels is 1 arcsec. The inner rectangle is the "
+         "</svg><p class=\"note\">Blue: none; red: 5 arcsec and more. An arrow of 12 pixels is 1 arcsec. The inner "
+         "rectangle is the "
          "region that flight reads.</p>";
 }
 
@@ -129,7 +132,12 @@ std::string calibration_page(const ProcedureResult& result) {
   double right = 0.0, lower = 0.0;
   for (const Residual& residual : result.residuals)
     right = std::max(right, residual.camera_px.x()), lower = std::max(lower, residual.camera_px.y());
-  std::string body;
+  std::string body = fmt::format(
+      "<h1>{}</h1>\n<p class=\"lead\">{}, {}</p>\n<p><span class=\"status {}\">{}</span> The mean residual of held-out "
+      "dots in the region that flight reads is {:.2f} arcsec.</p>\n",
+      kTitle, c.validity.emulated ? "emulated bench" : "hardware", report::escaped(c.validity.date_utc),
+      c.held_out.goal_reached ? "good" : "bad",
+      c.held_out.goal_reached ? "reaches its goal" : "does not reach its goal", c.held_out.region.mean_arcsec);
   body += report::section_html({"Bench", bench_facts(c)});
   body +=
       report::section_html({"Residuals", residual_table(c.held_out) + residual_map(result, static_cast<int>(right) + 20,
@@ -137,7 +145,7 @@ std::string calibration_page(const ProcedureResult& result) {
   body += report::section_html({"Light", light_facts(c)});
   body += report::section_html({"Camera", camera_facts(c)});
   body += report::section_html({"Display map", lens_facts(c)});
-  return report::html_page("Calibration of the Optical Stimulator", body);
+  return report::html_page(kTitle, body);
 }
 
 }  // namespace vbar::optical_stimulator::calibrate

@@ -7,10 +7,12 @@
 
 #include "hil_drivers/tron/calibration/procedure.h"
 #include "host_sim/report/plots/html_page.h"
+#include "host_sim/report/plots/svg_plot.h"
 
 namespace vbar::tron::calibrate {
 namespace {
 
+constexpr const char* kTitle = "Calibration of TRON";
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 std::string spread(double mean, double sigma, double median, int digits) {
@@ -37,67 +39,47 @@ std::string figures_table(const Calibration& calibration) {
   for (const StageFigures& stage : calibration.figures)
     if (stage.truth) rows.push_back(row(stage.stage, stage.poses, *stage.truth));
   return report::table({{"Source", false}, {"Poses"}, {"Translation, mm"}, {"Rotation, deg"}, {"Corners, px"}}, rows) +
-         "<p>Mean ± standard deviation (median) over postures that were not fitted.</p>";
+         "<p class=\"note\">Mean ± standard deviation (median) over postures that were not fitted.</p>\n";
 }
 
-struct Point {
-  double x = 0.0, y = 0.0;
-};
-
-/// Points over an axis from the lowest to the highest value.
-std::string plot(const std::string& title, const std::string& x_name, const std::string& y_name,
-                 const std::vector<Point>& points) {
-  if (points.empty()) return {};
-  double left = 1e300, right = -1e300, high = 1e-9;
-  for (const Point& point : points) {
-    left = std::min(left, point.x);
-    right = std::max(right, point.x);
-    high = std::max(high, point.y);
-  }
-  right = std::max(right, left + 1e-9);
-  constexpr double kWidth = 420.0, kHeight = 200.0, kEdge = 40.0;
-  std::string svg =
-      fmt::format(R"(<figure><svg viewBox="0 0 {:.0f} {:.0f}" role="img" style="width:100%"><title>{}</title>)"
-                  R"(<rect x="{:.0f}" y="10" width="{:.0f}" height="{:.0f}" fill="none" stroke="currentColor"/>)",
-                  kWidth + 2.0 * kEdge, kHeight + 60.0, report::escaped(title), kEdge, kWidth, kHeight);
-  for (const Point& point : points)
-    svg += fmt::format(R"(<circle cx="{:.1f}" cy="{:.1f}" r="3" fill="currentColor" fill-opacity="0.6"/>)",
-                       kEdge + kWidth * (point.x - left) / (right - left), 10.0 + kHeight * (1.0 - point.y / high));
-  const auto label = [&](double x, double y, const char* anchor, const std::string& text) {
-    svg += fmt::format(R"(<text x="{:.0f}" y="{:.0f}" text-anchor="{}" font-size="12" fill="currentColor">{}</text>)",
-                       x, y, anchor, report::escaped(text));
-  };
-  label(kEdge, kHeight + 26.0, "start", fmt::format("{:.3g}", left));
-  label(kEdge + kWidth, kHeight + 26.0, "end", fmt::format("{:.3g}", right));
-  label(kEdge + kWidth / 2.0, kHeight + 42.0, "middle", x_name);
-  label(kEdge - 4.0, 20.0, "end", fmt::format("{:.3g}", high));
-  label(kEdge + 6.0, 24.0, "start", y_name);
-  return svg + "</svg></figure>";
+/// The errors in translation of evaluated postures over a quantity of the bench.
+using Abscissa = std::function<double(const EvaluatedPose&, const Measurement&)>;
+report::Plot plot(const std::string& source, const std::vector<EvaluatedPose>& poses, const CalibrationData& data,
+                  const report::Axis& x, const Abscissa& of) {
+  report::Series dots{"", 0, report::Mark::kBroadDots};
+  for (const EvaluatedPose& pose : poses)
+    dots.points.push_back({of(pose, data.judged.at(pose.measurement)), 1e-3 * pose.board.translation_mm});
+  report::Plot plot;
+  plot.title = fmt::format("{} over {}", source, x.name);
+  plot.x = x;
+  plot.y = {.name = "translation error", .unit = report::Unit::kMetres, .min_span = 1e-5};
+  plot.height = 220.0;
+  plot.series.push_back(std::move(dots));
+  return plot;
 }
 
 std::string plots(const TestbedFit& fit, const CalibrationData& data) {
-  using Ordinate = std::function<double(const EvaluatedPose&, const Measurement&)>;
-  std::vector<std::string> all;
-  const auto add = [&](const std::string& name, const std::vector<EvaluatedPose>& poses, const std::string& x_name,
-                       const Ordinate& x) {
-    std::vector<Point> points;
-    for (const EvaluatedPose& pose : poses)
-      points.push_back({x(pose, data.judged.at(pose.measurement)), pose.board.translation_mm});
-    all.push_back(plot(name, x_name, name + ", mm", points));
+  using report::Unit;
+  std::vector<report::Plot> all;
+  const auto add = [&](const char* source, const std::vector<EvaluatedPose>& poses, std::string name, Unit unit,
+                       const Abscissa& of) {
+    if (!poses.empty()) all.push_back(plot(source, poses, data, {.name = std::move(name), .unit = unit}, of));
   };
-  const Ordinate range = [](const EvaluatedPose& pose, const Measurement&) { return pose.range_m; };
-  const Ordinate track = [](const EvaluatedPose&, const Measurement& m) { return m.posture.carriage_m; };
-  add("arms", fit.arms, "range, m", range);
-  add("motion capture", fit.vicon, "range, m", range);
-  add("fused", fit.fused, "range, m", range);
-  add("fused", fit.fused, "carriage, m", track);
+  const Abscissa range = [](const EvaluatedPose& pose, const Measurement&) { return pose.range_m; };
+  add("Arms", fit.arms, "range", Unit::kMetres, range);
+  add("Motion capture", fit.vicon, "range", Unit::kMetres, range);
+  add("Fused", fit.fused, "range", Unit::kMetres, range);
+  add("Fused", fit.fused, "carriage", Unit::kMetres,
+      [](const EvaluatedPose&, const Measurement& m) { return m.posture.carriage_m; });
   for (Eigen::Index k = 0; k < 6; ++k) {
-    add("fused", fit.fused, fmt::format("camera's arm A{}, deg", k + 1),
-        [k](const EvaluatedPose&, const Measurement& m) { return m.posture.camera_rad[k] * kDegrees; });
-    add("fused", fit.fused, fmt::format("target's arm A{}, deg", k + 1),
-        [k](const EvaluatedPose&, const Measurement& m) { return m.posture.target_rad[k] * kDegrees; });
+    add("Fused", fit.fused, fmt::format("A{} of the camera's arm", k + 1), Unit::kRadians,
+        [k](const EvaluatedPose&, const Measurement& m) { return m.posture.camera_rad[k]; });
+    add("Fused", fit.fused, fmt::format("A{} of the target's arm", k + 1), Unit::kRadians,
+        [k](const EvaluatedPose&, const Measurement& m) { return m.posture.target_rad[k]; });
   }
-  return report::figures(2, all) + "<p>Translation against the board's pose by the image.</p>";
+  return "<p class=\"note\">Translation against the board's pose by the image, of postures that were not "
+         "fitted.</p>\n" +
+         report::plot_rows(2, std::move(all));
 }
 
 std::string numbers_of(const auto& values, double unit, int digits) {
@@ -155,14 +137,16 @@ std::string light_table(const std::vector<LightTable>& lights) {
     rows.push_back({table.source, numbers_of(table.level, 1.0, 3), numbers_of(table.light, 1.0, 4)});
   return rows.empty() ? std::string()
                       : report::table({{"Source", false}, {"Level", false}, {"Light", false}}, rows) +
-                            "<p>Light relative to full power as designed, of the lamp to its own.</p>";
+                            "<p class=\"note\">Light relative to full power as designed, of the lamp to its own.</p>\n";
 }
 
 }  // namespace
 
 std::string calibration_page(const TestbedFit& fit, const CalibrationData& data) {
   const Calibration& c = fit.calibration;
-  std::string body;
+  std::string body =
+      fmt::format("<h1>{}</h1>\n<p class=\"lead\">{}, {}</p>\n", kTitle,
+                  c.validity.emulated ? "emulated bench" : "hardware", report::escaped(c.validity.date_utc));
   body += report::section_html({"Bench", bench_facts(c)});
   body += report::section_html({"Errors", figures_table(c)});
   body += report::section_html({"Errors over the bench", plots(fit, data)});
@@ -170,7 +154,7 @@ std::string calibration_page(const TestbedFit& fit, const CalibrationData& data)
   body += report::section_html({"Camera's arm", arm_facts(c.camera_arm)});
   body += report::section_html({"Target's arm", arm_facts(c.target_arm)});
   body += report::section_html({"Light", light_table(c.lights)});
-  return report::html_page("Calibration of TRON", body);
+  return report::html_page(kTitle, body);
 }
 
 }  // namespace vbar::tron::calibrate

@@ -87,6 +87,16 @@ def relative_columns(prefix=""):
     return [f"relative_position_rtn_{axis}_m" for axis in RTN] + [f"relative_velocity_rtn_{axis}_mps" for axis in RTN]
 
 
+def estimated_states(run):
+    """Rows (time, state of the target in ECI, covariance of the relative state) where navigation is valid."""
+    if "telemetry_navigation" not in run.tables:
+        return []
+    sigma_columns = [f"sigma_rtn_{axis}_m" for axis in RTN] + [f"sigma_rtn_{axis}_mps" for axis in RTN]
+    rows = run.numbers("telemetry_navigation", "time_s", "valid", *eci_columns("servicer"), *relative_columns(), *sigma_columns)
+    return [(row[0], target_state(row[2:8], row[8:14]), covariance_eci(row[2:8], row[14:20])) for row in rows
+            if row[1] == 1 and math.hypot(*row[2:5]) > 0]
+
+
 def orbits(run):
     """{file: text}: the true orbits, and that of the target as navigation estimates it, where it is valid."""
     files = {}
@@ -94,15 +104,10 @@ def orbits(run):
     for craft in ("servicer", "target"):
         states = run.numbers("truth", *eci_columns(craft))
         files[f"{craft}_true.oem"] = oem(run, craft.upper(), times, states, [], "true orbit of a simulated run of vbar")
-    if "telemetry_navigation" not in run.tables:
-        return files
-    sigma_columns = [f"sigma_rtn_{axis}_m" for axis in RTN] + [f"sigma_rtn_{axis}_mps" for axis in RTN]
-    rows = run.numbers("telemetry_navigation", "time_s", "valid", *eci_columns("servicer"), *relative_columns(), *sigma_columns)
-    rows = [row for row in rows if row[1] == 1 and math.hypot(*row[2:5]) > 0]
+    rows = estimated_states(run)
     if rows:
         files["target_estimated.oem"] = oem(
-            run, "TARGET", [row[0] for row in rows], [target_state(row[2:8], row[8:14]) for row in rows],
-            [(row[0], covariance_eci(row[2:8], row[14:20])) for row in rows],
+            run, "TARGET", [row[0] for row in rows], [row[1] for row in rows], [(row[0], row[2]) for row in rows],
             "estimated orbit; the covariance is that of the state relative to the servicer, without correlations in RTN")
     return files
 

@@ -250,7 +250,9 @@ void append_sensor_figures(std::vector<ComparisonRow>& rows, Runs runs) {
         const auto figures = r.summary.sensor_figures.find(of);
         if (figures == r.summary.sensor_figures.end()) return std::string(kNone);
         const auto found = figures->second.find(name);
-        return found == figures->second.end() ? std::string(kNone) : significant(found->second, 3);
+        if (found == figures->second.end()) return std::string(kNone);
+        const bool is_count = found->second >= 1000.0 && std::trunc(found->second) == found->second;
+        return is_count ? grouped_nearest(found->second) : significant(found->second, 3);
       }));
   }
 }

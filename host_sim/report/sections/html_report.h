@@ -23,7 +23,8 @@ namespace vbar::report {
 std::filesystem::path write_html_report(const std::filesystem::path& run_folder, const RunRecord& record,
                                         std::string_view note = {});
 
-// A page with several runs side by side: the comparison's table, delta-v and ROE of all runs in the same plots.
+// A page with several runs side by side (html_comparison.cpp): the comparison's table, and distances, errors, paths,
+// delta-v and ROE of all runs in the same plots.
 
 /// Returns the page of at least one run.
 [[nodiscard]] std::string html_comparison(std::span<const ComparedRun> runs);

@@ -106,6 +106,36 @@ inline Plot time_plot(const View& view, std::string title, std::string quantity,
   return plot;
 }
 
+/// A plane of the servicer's RTN frame: which component is the abscissa, which the ordinate.
+struct RtnPlane {
+  const char* title;
+  std::size_t x, y;
+  const char* x_name;
+  const char* y_name;
+
+  [[nodiscard]] Point of(const Triple& position_rtn) const { return {position_rtn[x], position_rtn[y]}; }
+};
+inline constexpr std::array<RtnPlane, 3> kRtnPlanes{{{"T-R", 1, 0, "along track T", "radial R"},
+                                                     {"N-R", 2, 0, "cross track N", "radial R"},
+                                                     {"T-N", 1, 2, "along track T", "cross track N"}}};
+
+/// The positions of a view in a plane.
+inline Plot plane_plot(const View& view, const RtnPlane& plane) {
+  Plot plot;
+  plot.title = std::string(plane.title) + ", " + view.name;
+  plot.x = {.name = plane.x_name, .unit = Unit::kMetres, .min_span = 0.01};
+  plot.y = {.name = plane.y_name, .unit = Unit::kMetres, .min_span = 0.01};
+  return plot;
+}
+
+/// The true path of a run within a view.
+inline std::vector<Point> path_in(const RtnPlane& plane, const View& view, const RunRecord& record) {
+  std::vector<Point> points;
+  for (const TruthRow& row : record.truth)
+    if (view.holds(row.time_s)) points.push_back(plane.of(row.relative_position_rtn));
+  return points;
+}
+
 /// Explanation of the moments and events of a plot, as HTML.
 inline constexpr const char* kPlotNote =
     "<p class=\"note\">Dashed vertical lines: waypoints. Strokes on the lower edge: maneuvers.</p>\n";

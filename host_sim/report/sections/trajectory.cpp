@@ -13,21 +13,6 @@ namespace vbar::report {
 
 namespace {
 
-/// A plane of the servicer's RTN frame: which component runs along x, which along y.
-struct Plane {
-  const char* title;
-  std::size_t x, y;
-  const char* x_name;
-  const char* y_name;
-};
-constexpr Plane kPlanes[] = {{"T-R", 1, 0, "along track T", "radial R"},
-                             {"N-R", 2, 0, "cross track N", "radial R"},
-                             {"T-N", 1, 2, "along track T", "cross track N"}};
-
-Point in_plane(const Plane& plane, const Triple& position_rtn) {
-  return {position_rtn[plane.x], position_rtn[plane.y]};
-}
-
 // Below this ratio of the axes a common scale leaves both readable.
 constexpr double kFlattest = 6.0;
 
@@ -50,20 +35,13 @@ std::string ring_tooltip(const RunRecord& record, const WaypointRow& row) {
   return fmt::format("{}; control error {} m", place, fixed(row.control_error_m, 4));
 }
 
-Plot projection(const RunRecord& record, const View& view, const Plane& plane) {
-  Plot plot;
-  plot.title = fmt::format("{}, {}", plane.title, view.name);
-  plot.x = {.name = plane.x_name, .unit = Unit::kMetres, .min_span = 0.01};
-  plot.y = {.name = plane.y_name, .unit = Unit::kMetres, .min_span = 0.01};
-  Series truth{.name = "true", .colour = 0};
-  for (const TruthRow& row : record.truth) {
-    if (view.holds(row.time_s)) truth.points.push_back(in_plane(plane, row.relative_position_rtn));
-  }
+Plot projection(const RunRecord& record, const View& view, const RtnPlane& plane) {
+  Plot plot = plane_plot(view, plane);
+  Series truth{.name = "true", .colour = 0, .points = path_in(plane, view, record)};
   plot.same_scale = fits_same_scale(truth.points);
   plot.series.push_back(std::move(truth));
   for (const WaypointRow& row : view.waypoints) {
-    plot.rings.push_back(
-        {in_plane(plane, row.actual_position_rtn), std::to_string(row.index), ring_tooltip(record, row)});
+    plot.rings.push_back({plane.of(row.actual_position_rtn), std::to_string(row.index), ring_tooltip(record, row)});
   }
   return plot;
 }
@@ -74,7 +52,7 @@ Section trajectory_section(const RunRecord& record) {
   if (record.truth.empty()) return {};
   std::vector<Plot> plots;
   for (const View& view : mission_views(record)) {
-    for (const Plane& plane : kPlanes) plots.push_back(projection(record, view, plane));
+    for (const RtnPlane& plane : kRtnPlanes) plots.push_back(projection(record, view, plane));
   }
   return {"Trajectory",
           "<p class=\"note\">True position of the target in the servicer's RTN frame. Rings: positions at the times of "

@@ -149,6 +149,53 @@ class ExitsEphemerides(ExitsRun):
         self.assertFalse((self.folder / "x").exists())
 
 
+class ExitsCzml(ExitsRun):
+    """CZML as its specification states it (czml-writer, pages "CZML Structure" and "Packet")."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        result = vbar("export", cls.run_folder, "--czml", cls.folder / "run.czml")
+        assert result.returncode == 0, result.stderr
+        cls.packets = json.loads((cls.folder / "run.czml").read_text())
+        cls.of = {packet["id"]: packet for packet in cls.packets}
+
+    def test_structure(self):
+        document = self.packets[0]
+        self.assertEqual((document["id"], document["version"]), ("document", "1.0"))
+        self.assertEqual(len(self.of), len(self.packets))  # identifiers are unique
+        begin, end = document["clock"]["interval"].split("/")
+        self.assertEqual(document["clock"]["currentTime"], begin)
+        for packet in self.packets[1:]:
+            since, until = packet["availability"].split("/")
+            self.assertTrue(begin <= since < until <= end, packet["id"])
+            self.assertEqual(packet["position"]["referenceFrame"], "INERTIAL")
+            for place in ("point", "label"):
+                colour = packet[place].get("color", packet[place].get("fillColor"))["rgba"]
+                self.assertTrue(len(colour) == 4 and all(0 <= value <= 255 for value in colour))
+
+    def test_positions_are_those_of_the_table(self):
+        truth = rows_of(self.run_folder / "truth.csv")
+        epoch = json.loads((self.run_folder / "summary.json").read_text())["provenance"]["epoch_utc"]
+        for craft in ("servicer", "target"):
+            position = self.of[craft]["position"]
+            self.assertEqual(datetime.datetime.fromisoformat(position["epoch"].rstrip("Z")), datetime.datetime.fromisoformat(epoch.rstrip("Z")))
+            samples = [position["cartesian"][k:k + 4] for k in range(0, len(position["cartesian"]), 4)]
+            expected = [[row["time_s"], *(row[f"{craft}_position_eci_{axis}_m"] for axis in "xyz")] for row in truth]
+            self.assertEqual([list(map(bits, sample)) for sample in samples], [list(map(bits, row)) for row in expected])
+
+    def test_the_estimate_and_the_burns(self):
+        """The estimate is as far from the servicer as telemetry states; a burn begins when it was executed."""
+        valid = [row for row in rows_of(self.run_folder / "telemetry_navigation.csv") if row["valid"] == "1"]
+        values = self.of["target_estimated"]["position"]["cartesian"]
+        self.assertEqual(values[::4], [float(row["time_s"]) for row in valid])
+        for k, row in enumerate(valid):
+            offset = [values[4 * k + 1 + axis] - float(row[f"servicer_position_eci_{name}_m"]) for axis, name in enumerate("xyz")]
+            self.assertAlmostEqual(math.hypot(*offset), math.hypot(*(float(row[f"relative_position_rtn_{axis}_m"]) for axis in "rtn")), 6)
+        executed = [row for row in rows_of(self.run_folder / "maneuvers.csv") if row["executed_dv_rtn_t_mps"]] if (self.run_folder / "maneuvers.csv").exists() else []
+        self.assertEqual(len([name for name in self.of if name.startswith("burn_")]), len(executed))
+
+
 TABLES = {"telemetry_gnss": "gnss"}  # of the messages whose table has another name
 
 

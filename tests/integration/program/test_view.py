@@ -90,6 +90,18 @@ def bits(cells):
     return [struct.pack("<d", float(cell)) if cell else None for cell in cells]
 
 
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def norm(a):
+    return dot(a, a) ** 0.5
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
 def need_page(folder):
     """Skips the class where vbar was built without the page, with the sentence of vbar about that."""
     result = vbar("view", folder)
@@ -175,6 +187,126 @@ class View(unittest.TestCase):
         result = vbar("view", self.folder)
         self.assertNotEqual(result.returncode, 0)
         self.assertEqual(result.stderr.count("\n"), 1)
+
+
+class ViewPropagation(unittest.TestCase):
+    """The page of two spacecraft that were propagated for seven hours at steps of a second."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = scratch()
+        cls.folder = cls.scratch.__enter__()
+        cls.run_folder = cls.propagated("two", "truth.gravity_degree=2", "truth.gravity_order=0", "mission.duration_h=7", "mission.step_s=1")
+        need_page(cls.run_folder)
+        cls.page = cls.run_folder / "view.html"
+        cls.shown = runs_of(cls.page)[0]
+        cls.tables = tables_of(cls.shown)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.scratch.__exit__(None, None, None)
+
+    @classmethod
+    def propagated(cls, name, *settings, mission="ideal_navigation"):
+        result = vbar("propagate", mission, "--out", cls.folder / name, "--quiet", *[word for one in settings for word in ("--set", one)])
+        assert result.returncode == 0, result.stderr
+        return cls.folder / name
+
+    def test_rows_in_the_page_are_those_of_the_file_with_all_extremes(self):
+        for name in ("servicer", "target"):
+            file, page = file_of(self.run_folder / f"{name}.csv"), self.tables[f"{name}.csv"]
+            self.assertEqual(list(page), [column for column in file if column != "utc"])
+            row_of = {float(cell): row for row, cell in enumerate(file["time_s"])}
+            rows = [row_of[float(cell)] for cell in page["time_s"]]
+            self.assertEqual(rows, sorted(set(rows)))
+            self.assertLess(len(rows), 25201)
+            self.assertEqual((rows[0], rows[-1]), (0, 25200))
+            for column, cells in page.items():
+                self.assertEqual(bits(cells), bits([file[column][row] for row in rows]), column)
+                numbers = list(map(float, file[column]))
+                self.assertEqual((max(map(float, cells)), min(map(float, cells))), (max(numbers), min(numbers)), column)
+        described = next(table for table in self.shown["tables"] if table["file"] == "target.csv")
+        self.assertEqual(described["rows_of_file"], 25201)
+
+    def test_the_relative_motion_is_that_of_both_ephemerides(self):
+        """R along the position of the first, N along its angular momentum; velocities as seen in that rotating frame."""
+        files = [file_of(self.run_folder / f"{name}.csv") for name in ("servicer", "target")]
+        row_of = {float(cell): row for row, cell in enumerate(files[0]["time_s"])}
+        motion = self.tables[""]
+        for k in range(0, len(motion["time_s"]), 97):
+            row = row_of[float(motion["time_s"][k])]
+            (r, v), (r2, v2) = ([[float(file[f"{stem}_eci_{axis}_{unit}"][row]) for axis in "xyz"]
+                                 for stem, unit in (("position", "m"), ("velocity", "mps"))] for file in files)
+            h = cross(r, v)
+            axes = [[x / norm(r) for x in r], None, [x / norm(h) for x in h]]
+            axes[1] = cross(axes[2], axes[0])
+            rho = [b - a for a, b in zip(r, r2)]
+            rate = [x / dot(r, r) for x in h]
+            seen = [b - a - c for a, b, c in zip(v, v2, cross(rate, rho))]
+            for axis, name in zip(axes, "rtn"):
+                # 75 km of differences of numbers of 7e6 m: binary64 leaves nanometres.
+                self.assertAlmostEqual(float(motion[f"relative_position_rtn_{name}_m"][k]), dot(axis, rho), 6)
+                self.assertAlmostEqual(float(motion[f"relative_velocity_rtn_{name}_mps"][k]), dot(axis, seen), 9)
+
+    def test_what_is_no_propagation(self):
+        damaged = self.folder / "damaged"
+        shutil.copytree(self.run_folder, damaged)
+        lines = (damaged / "target.csv").read_text().splitlines()
+        lines[9] = lines[9].replace(",", ",x", 2)
+        (damaged / "target.csv").write_text("\n".join(lines) + "\n")
+        short = self.folder / "short"
+        shutil.copytree(self.run_folder, short)
+        (short / "target.csv").write_text("\n".join(lines[:9]) + "\n")
+        incomplete = self.folder / "incomplete"
+        shutil.copytree(self.run_folder, incomplete)
+        record = json.loads((incomplete / "propagation.json").read_text())
+        (incomplete / "propagation.json").write_text(json.dumps(record | {"complete": False}))
+        outside = self.folder / "outside"
+        shutil.copytree(self.run_folder, outside)
+        record["spacecraft"][0]["name"] = "../two/servicer"
+        (outside / "propagation.json").write_text(json.dumps(record))
+        for folders, expected in (([damaged], "target.csv, line 10: found 'x"), ([short], "target.csv, line 10"), ([incomplete], "incomplete"),
+                                  ([outside], "found '../two/servicer'"), ([self.run_folder, self.run_folder], "one propagation alone")):
+            result = vbar("view", *folders)
+            self.assertNotEqual(result.returncode, 0, expected)
+            self.assertIn(expected, result.stderr)
+            self.assertEqual(result.stderr.count("\n"), 1)
+
+    def test_the_page_in_a_browser(self):
+        if not browser.program():
+            self.skipTest("no browser")
+        single = self.propagated("one", "mission.duration_h=6", mission="full_force_orbit")
+        self.assertEqual(vbar("view", single).returncode, 0)
+        with browser.browser() as page:
+            page.show()
+            page.open(self.page.as_uri() + "#t=2h&tab=relative")
+            x, y, z = (float(self.tables[""][f"relative_position_rtn_{axis}_m"][0]) for axis in "rtn")
+            page.evaluate("vbarView.cursor.set(0)")
+            self.assertAlmostEqual(page.evaluate("vbarView.scene.target.position.length()"), (x * x + y * y + z * z) ** 0.5, 6)
+            for tab in ("orbit", "relative", "columns"):
+                page.evaluate(f"vbarView.choose('{tab}')")
+            self.assertEqual(page.errors, [])
+        with browser.browser() as page:
+            page.show()
+            page.open((single / "view.html").as_uri())
+            self.assertEqual(page.evaluate("document.querySelectorAll('.scene canvas').length"), 1)
+            self.assertGreater(page.evaluate("document.querySelectorAll('.uplot').length"), 4)
+            # The orbit of the mission: 7087.3 km with eccentricity 0.0015.
+            orbit = page.evaluate("vbarView.elementsAt(0)")
+            self.assertAlmostEqual(orbit["semiMajorAxis"] / 1e3, 7087.30, 2)
+            self.assertAlmostEqual(orbit["eccentricity"], 0.0015, 6)
+            self.assertAlmostEqual(orbit["inclination"], 98.18, 4)
+            self.assertAlmostEqual(orbit["ascendingNode"], 270.0, 4)
+            self.assertEqual(page.errors, [])
+
+
+kContrast = """(() => {
+  const rgb = (text) => text.match(/[0-9.]+/g).slice(0, 3).map((x) => { const c = x / 255; return c <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4; });
+  const light = (text) => { const [r, g, b] = rgb(text); return 0.2126 * r + 0.7152 * g + 0.0722 * b; };
+  const ground = light(getComputedStyle(document.body).backgroundColor);
+  return Math.min(...[...document.querySelectorAll('.numbers th, .numbers td, .clock, .facts dt, .facts dd, .u-title')].map((e) => {
+    const ink = light(getComputedStyle(e).color);
+    return (Math.max(ink, ground) + 0.05) / (Math.min(ink, ground) + 0.05); })); })()"""
 
 
 class ViewInBrowser(unittest.TestCase):
@@ -291,6 +423,54 @@ class ViewInBrowser(unittest.TestCase):
             page.open(self.address)
             self.assertIn("WebGL", page.evaluate("document.querySelector('.scene').innerText"))
             self.assertGreater(page.evaluate("document.querySelectorAll('.uplot').length"), 3)
+
+    def test_keyboard_alone(self):
+        """Tab reaches controls, views, time bar and tabs; keys act on what has the focus, and the focus is visible."""
+        with browser.browser() as page:
+            page.show()
+            page.open(self.address)
+
+            def press(key, code, **more):
+                for kind in ("keyDown", "keyUp"):
+                    page.call("Input.dispatchKeyEvent", type=kind, key=key, windowsVirtualKeyCode=code, **more)
+
+            reached = []
+            for _ in range(60):
+                press("Tab", 9)
+                focus = page.evaluate("(() => { const e = document.activeElement; return [e.className || e.innerText || e.title, getComputedStyle(e).outlineStyle]; })()")
+                reached.append(focus[0])
+                self.assertNotEqual(focus[1], "none", focus)
+                if focus[0] == "ROE":
+                    break
+            for name in ("play", "time", "timeBar", "Target", "Navigation", "ROE"):
+                self.assertIn(name, reached)
+            press("Enter", 13, text="\r")
+            self.assertEqual(page.evaluate("document.querySelector('[role=tab][aria-selected=true]').innerText"), "ROE")
+            page.evaluate("document.querySelector('.timeBar').focus()")
+            press("End", 35)
+            self.assertEqual(page.evaluate("vbarView.cursor.t === vbarView.cursor.end"), True)
+            press("Home", 36)
+            self.assertEqual(page.evaluate("vbarView.cursor.t === vbarView.cursor.start"), True)
+            press("3", 51, text="3")
+            self.assertEqual(page.evaluate("vbarView.scene.options.view"), "target")
+            self.assertEqual(page.errors, [])
+
+    def test_nothing_is_cut_at_1280_by_720_and_on_paper(self):
+        with browser.browser() as page:
+            for dark in (False, True):
+                page.show((1280, 720), dark=dark)
+                page.open(self.address)
+                self.assertEqual(page.evaluate("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]"), [1280, 720])
+                # Of text on its ground: WCAG 2.1, 1.4.3 asks for 4.5.
+                self.assertGreater(page.evaluate(kContrast), 4.5, "dark" if dark else "light")
+            page.show((794, 1123))  # A4 at 96 pixels an inch
+            page.call("Emulation.setEmulatedMedia", media="print")
+            self.assertEqual(page.evaluate("getComputedStyle(document.querySelector('.controls')).display"), "none")
+            width = page.evaluate("document.documentElement.clientWidth")
+            self.assertEqual(page.evaluate("[document.documentElement.scrollWidth, document.querySelector('.scene').clientWidth]"), [width, width])
+            self.assertGreater(page.evaluate("document.documentElement.scrollHeight"), 1123)  # plots below each other, none behind a scroll bar
+            self.assertEqual(page.evaluate("getComputedStyle(document.querySelector('.plots')).overflow"), "visible")
+            self.assertEqual(page.errors, [])
 
     def test_keys(self):
         with browser.browser() as page:

@@ -2,10 +2,11 @@
 
 import { Cursor, Link, secondsOf } from './cursor.js';
 import { Motion, norm } from './frames.js';
+import { GroundTrack } from './ground_track.js';
 import { followRun, paceControl } from './live.js';
 import { Numbers, valuesAt } from './numbers.js';
 import { Picture } from './picture.js';
-import { selectedPlots, tabsOf } from './plot_tabs.js';
+import { orbitOf, selectedPlots, tabsOf } from './plot_tabs.js';
 import { Plots } from './plots.js';
 import { Run } from './run_data.js';
 import { kViews, Scene } from './scene.js';
@@ -47,8 +48,8 @@ function headOf(runs, cursor, link) {
                      ...kSpeeds.map((s) => Object.assign(make('option', { text: `${s}×` }), { value: s })));
   speed.value = cursor.speed;
   const head = make('header', {},
-    make('h1', { text: runs.map((r) => r.name).join(' | '), title: `${summary.mission}, seed ${summary.seed}` }),
-    make('span', { class: `status ${{ achieved: 'good', 'not judged': '', flying: '' }[verdict] ?? 'bad'}`, text: verdict, title: summary.verdict_reason ?? summary.incomplete_reason ?? '' }),
+    make('h1', { text: runs.map((r) => r.name).join(' | '), title: run.isPropagation ? summary.mission : `${summary.mission}, seed ${summary.seed}` }),
+    make('span', { class: `status ${{ achieved: 'good', 'not judged': '', flying: '', propagated: '' }[verdict] ?? 'bad'}`, text: verdict, title: summary.verdict_reason ?? summary.incomplete_reason ?? '' }),
     make('span', { class: 'space' }), range, clock,
     make('span', { class: 'controls' },
       make('button', { text: '‹', title: 'a step back (←; with shift 10 steps)', click: () => cursor.step(-1) }), play,
@@ -60,7 +61,7 @@ function headOf(runs, cursor, link) {
       } })));
   const show = (t) => {
     const row = valuesAt(run, t).rows[0];
-    range.textContent = withUnit(row.truth, 'm', 5);
+    range.textContent = row ? withUnit(row.truth, 'm', 5) : '';
     clock.textContent = utc(run, t);
     if (document.activeElement !== entry) entry.value = hours(t);
     play.textContent = cursor.playing ? '❚❚' : '▶';
@@ -93,6 +94,10 @@ async function sceneOf(place, runs, motions, cursor, link) {
     link.set('view', id === 'both' ? '' : id);
     buttons.forEach((button, k) => button.setAttribute('aria-pressed', kViews[k][0] === id));
   };
+  if (!motions.length) {
+    new GroundTrack(place, runs[0], cursor);
+    return { view: () => {} };
+  }
   try {
     scene = await Scene.make(place, runs, motions);
   } catch (error) {
@@ -107,7 +112,7 @@ async function sceneOf(place, runs, motions, cursor, link) {
     return select;
   };
   place.append(make('div', { class: 'views' }, ...buttons,
-    choice('centre', [['servicer', 'about the servicer'], ['target', 'about the target']]), choice('axes', [['rotating', 'RTN rotating'], ['fixed', 'RTN fixed at start']])));
+    choice('centre', ['servicer', 'target'].map((body) => [body, `about ${runs[0].isPropagation ? '' : 'the '}${scene[body].userData.name}`])), choice('axes', [['rotating', 'RTN rotating'], ['fixed', 'RTN fixed at start']])));
   scene.rebuildPaths();
   view(kViews.some(([id]) => id === link.get('view')) ? link.get('view') : 'both');
   cursor.onChange((t) => scene.show(t));
@@ -148,8 +153,10 @@ function plotsOf(place, runs, cursor, link) {
     link.set('tab', k === 0 ? '' : tabs[k].id);
     tabs[k].show();
   };
-  const thinned = [...runs[0].tables.values()].filter((table) => table.rowsOfFile > table.rows);
-  const note = make('span', { class: 'note', text: thinned.map((table) => `${table.name}: ${table.rows} of ${table.rowsOfFile} rows, extremes kept; all are in ${table.file}`).join('; ') });
+  const thinned = [...runs[0].tables.values()].filter((table) => table.file && table.rowsOfFile > table.rows);
+  const each = thinned.map((table) => `${table.name}: ${table.rows} of ${table.rowsOfFile} rows`);
+  const note = make('span', { class: 'note', title: each.join('\n'), text: thinned.length === 0 ? ''
+    : thinned.length === 1 ? `${each[0]}, extremes kept; all are in ${thinned[0].file}` : `${each[0]}, and ${thinned.length - 1} more tables in part, extremes kept; the CSV files have all rows` });
   const row = make('nav', { class: 'tabs' }, ...buttons, note);
   row.setAttribute('role', 'tablist');
   place.append(row, make('div', { class: 'plotArea' }, chooser, area));
@@ -170,9 +177,9 @@ async function start() {
   const runs = await Promise.all(heads.map((head) => Run.read(head)));
   const page = document.getElementById('page');
   const [run] = runs;
-  if (!run.table('truth')) throw new Error('the run has no steps');
-  const motions = runs.map((r) => new Motion(r));
-  const link = new Link(), cursor = new Cursor(run.table('truth').time);
+  if (!run.time?.length) throw new Error('the run has no steps');
+  const motions = run.table('truth') ? runs.map((r) => new Motion(r)) : [];
+  const link = new Link(), cursor = new Cursor(run.time);
   cursor.set(secondsOf(link.get('t')) ?? cursor.start);
 
   const { head, speed } = headOf(runs, cursor, link);
@@ -182,7 +189,7 @@ async function start() {
   const bar = make('section', { class: 'timeBar' }), plotElement = make('section', { class: 'plotSection' });
   page.replaceChildren(head, make('div', { class: `upper${run.pictures.length ? ' withPicture' : ''}` }, sceneElement, pictureElement, side), bar, plotElement);
   const notes = [run.note, ...(run.scene?.notes ?? [])].filter(Boolean);
-  if (notes.length) side.append(make('p', { class: 'warning', text: `The mission of this run could not be read in full: ${notes.join('; ')}` }));
+  if (notes.length) side.append(make('p', { class: 'warning', text: `${run.isPropagation ? 'Note' : 'The mission of this run could not be read in full'}: ${notes.join('; ')}` }));
   new Numbers(side, run, cursor);
   new Picture(pictureElement, run, cursor, link);
   const timeBar = new TimeBar(bar, run, cursor);
@@ -202,7 +209,7 @@ async function start() {
   if (live) cursor.set(cursor.end);
 
   // For scripts and tests: the state of the page, the cells of the tables, the values shown.
-  window.vbarView = { runs, cursor, scene, timeBar, motions, choose, valuesAt: (t) => valuesAt(run, t), rangeAt: (t) => norm(motions[0].frameAt(t).rho) };
+  window.vbarView = { runs, cursor, scene, timeBar, motions, choose, valuesAt: (t) => valuesAt(run, t), rangeAt: (t) => norm(motions[0].frameAt(t).rho), elementsAt: (row) => orbitOf(run, row) };
   requestAnimationFrame(() => { document.documentElement.dataset.ready = 'yes'; });  // after the first frame of the scene
 }
 

@@ -1,9 +1,9 @@
 // The tabs of plots: which columns of which tables make a curve. A curve: x (h), y (SI, null where there is no value), unit,
 // label, style.
 
-import { norm } from './frames.js';
+import { cross, dot, norm } from './frames.js';
 import { indexAt } from './run_data.js';
-import { number, unitOf } from './units.js';
+import { number, unitOf, withoutUnit } from './units.js';
 
 const kAxes = ['r', 't', 'n'], kElements = ['da', 'dlambda', 'dex', 'dey', 'dix', 'diy'];
 const kTrue = { width: 3.5 };  // under the estimate, and visible beside it
@@ -31,7 +31,7 @@ function computed(run, table, names, each, label, colour, more) {
 /** Estimate minus truth at the steps of the estimate; NaN where there is no row of the truth at that time. */
 function errors(run, stem, axis, unit) {
   const estimate = run.table('estimate'), truth = run.table('truth'), name = `${stem}_${axis}_${unit}`;
-  const [e, t] = [estimate?.numbers(name), truth.numbers(name)];
+  const [e, t] = [estimate?.numbers(name), truth?.numbers(name)];
   if (!e || !t) return undefined;
   return { time: estimate.time, values: Float64Array.from(e, (value, k) => {
     const row = truth.rowAt(estimate.time[k]);
@@ -45,7 +45,7 @@ function relativePlots(run) {
   const component = (stem, unitName) => kAxes.map((a) => [
     ...column(run, 'truth', `${stem}_${a}_${unitName}`, 'true', 'c0', kTrue), ...column(run, 'estimate', `${stem}_${a}_${unitName}`, 'estimated', 'c1')]);
   return [{ title: 'Range', unit: 'm', log: true, curves: [...range, ...estimated] },
-          ...component('relative_position_rtn', 'm').map((curves, k) => ({ title: `${kAxes[k].toUpperCase()} of the target`, unit: 'm', curves })),
+          ...component('relative_position_rtn', 'm').map((curves, k) => ({ title: `${kAxes[k].toUpperCase()} of ${run.isPropagation ? run.spacecraft[1] : 'the target'}`, unit: 'm', curves })),
           ...component('relative_velocity_rtn', 'mps').map((curves, k) => ({ title: `${kAxes[k].toUpperCase()} velocity`, unit: 'm/s', curves }))];
 }
 
@@ -106,7 +106,7 @@ function residualPlots(run) {
 function columnPlots(run, tableName, names) {
   const table = run.table(tableName);
   if (!table) return [];
-  return names.filter((name) => table.column(name)).map((name) => ({ title: name, unit: unitOf(name), curves: column(run, tableName, name, name, 'c0', { step: true }) }));
+  return names.filter((name) => table.column(name)).map((name) => ({ title: withoutUnit(name).replaceAll('_', ' '), unit: unitOf(name), curves: column(run, tableName, name, withoutUnit(name).replaceAll('_', ' '), 'c0', { step: true }) }));
 }
 
 function attitudePlots(run) {
@@ -125,6 +125,34 @@ const kSensorColumns = { gnss: ['tracked', 'fixed', 'ratio', 'codes_used', 'phas
                          poses: ['keypoints_used', 'range_m', 'nis'] };
 const kComputerColumns = ['step_cost', 'stack_bytes'];
 const kHealthColumns = ['packets_accepted', 'rejected_other', 'solver_fallbacks', 'plans_unsafe', 'holds'];
+
+export const kEarth_m3ps2 = 3.986004415e14;  // of the truth's gravity field (GGM05S)
+
+/** Osculating elements of a position and a velocity (m, m/s, ECI): semi-major axis in m, eccentricity, angles in deg. */
+function elementsOf(r, v) {
+  const h = cross(r, v), size = norm(r), toDeg = 180 / Math.PI, positive = (angle) => (angle + 360) % 360;
+  const e = cross(v, h).map((x, k) => x / kEarth_m3ps2 - r[k] / size);
+  return { semiMajorAxis: 1 / (2 / size - dot(v, v) / kEarth_m3ps2), eccentricity: norm(e), inclination: Math.acos(h[2] / norm(h)) * toDeg,
+           ascendingNode: positive(Math.atan2(h[0], -h[1]) * toDeg) };
+}
+
+const kStateColumns = ['position_eci_x_m', 'position_eci_y_m', 'position_eci_z_m', 'velocity_eci_x_mps', 'velocity_eci_y_mps', 'velocity_eci_z_mps'];
+
+/** The osculating elements of the first spacecraft of a propagation in a row. */
+export function orbitOf(run, row) {
+  const state = run.table(run.spacecraft[0]).vector(...kStateColumns).map((column) => column[row]);
+  return elementsOf(state.slice(0, 3), state.slice(3));
+}
+
+/** Orbits of the spacecraft of a propagation. */
+function orbitPlots(run) {
+  const of = (each) => run.spacecraft.flatMap((name, k) => computed(run, name, kStateColumns, (s) => each(elementsOf(s.slice(0, 3), s.slice(3))), name, `c${k % 6}`));
+  return [{ title: 'Altitude above WGS 84', unit: 'm', curves: run.spacecraft.flatMap((name, k) => column(run, name, 'altitude_m', name, `c${k % 6}`)) },
+          { title: 'Semi-major axis', unit: 'm', curves: of((o) => o.semiMajorAxis) }, { title: 'Eccentricity', unit: '', curves: of((o) => o.eccentricity) },
+          { title: 'Inclination', unit: 'deg', curves: of((o) => o.inclination) }, { title: 'Right ascension of the ascending node', unit: 'deg', curves: of((o) => o.ascendingNode) }];
+}
+
+const kPropagationTabs = { orbit: ['Orbits', orbitPlots], relative: ['Relative motion', relativePlots] };
 
 const kTabs = {
   relative: ['Relative state', relativePlots],
@@ -169,17 +197,18 @@ export function selectedPlots(runs, ids) {
   return ids.flatMap((id) => {
     const curves = runs.flatMap((run, k) => {
       const found = run.column(id);
-      return found?.isNumeric && found.table.time ? [curve(k === 0 ? found.name : `${found.name}, ${run.name}`, `c${k % 6}`, found.table.time, found.numbers, { dash: k > 0 })] : [];
+      return found?.isNumeric && found.table.time ? [curve(k === 0 ? withoutUnit(found.name) : `${withoutUnit(found.name)}, ${run.name}`, `c${k % 6}`, found.table.time, found.numbers, { dash: k > 0 })] : [];
     });
-    return curves.length ? [{ title: id, unit: unitOf(id), curves }] : [];
+    return curves.length ? [{ title: withoutUnit(id), unit: unitOf(id), curves }] : [];
   });
 }
 
 /** The tabs that the runs have something for: id, name, plots(). */
 export function tabsOf(runs) {
   const [first, ...others] = runs;
-  const tabs = Object.entries(kTabs).map(([id, [name, make]]) => ({ id, name, plots: () => withGhosts(
+  const tabs = Object.entries(first.isPropagation ? kPropagationTabs : kTabs).map(([id, [name, make]]) => ({ id, name, plots: () => withGhosts(
     make(first).filter((plot) => plot.curves.length), others.map((run) => ({ name: run.name, plots: make(run) }))) }));
+  if (first.isPropagation && !first.table('truth')) tabs.pop();
   if (others.length) tabs.push({ id: 'difference', name: 'Difference', plots: () => differencePlots(first, others[0]) });
   return tabs;
 }

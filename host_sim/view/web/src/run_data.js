@@ -82,7 +82,7 @@ const kTimes = ['time_s', 'execution_time_s', 'begin_s'];
 class Table {
   constructor(head) {
     this.file = head.file;
-    this.name = head.file ? head.file.replace(/\.csv$/, '') : 'sunlight';
+    this.name = head.name || head.file.replace(/\.csv$/, '');
     this.rows = head.rows;
     this.rowsOfFile = head.rows_of_file;
     this.columns = new Map();
@@ -113,6 +113,8 @@ class Table {
 export class Run {
   constructor(head) {
     this.name = head.name;
+    this.isPropagation = head.kind === 'propagation';
+    this.spacecraft = head.spacecraft ?? [];  // of a propagation, in the order of the mission
     this.summary = head.summary;
     this.pictures = head.pictures;
     this.scene = head.scene;
@@ -139,8 +141,10 @@ export class Run {
     });
     return found;
   }
-  get start() { return this.table('truth').time[0]; }
-  get end() { return this.table('truth').time.at(-1); }
+  /** Times of the steps; of a propagation of one spacecraft, which has no relative motion, those of its ephemeris. */
+  get time() { return (this.table('truth') ?? this.table(this.spacecraft[0]))?.time; }
+  get start() { return this.time[0]; }
+  get end() { return this.time.at(-1); }
 
   static async read(head) {
     const run = new Run(head);

@@ -482,11 +482,15 @@ export class Scene {
     if (this.estimateLabel.position.distanceTo(this.target.position) < 12 * this.#metresPerPixel(this.target.position)) this.estimateLabel.visible = false;
     const keepOut = this.keepOut.visible ? `, keep-out ${withUnit(this.keepOutRadius, 'm', 3)}` : '';
     if (this.through) this.gridLabel.textContent = `through ${this.eye.camera.name} of the ${this.servicer.userData.name}${this.keypoints.geometry.attributes.position?.count ? ', keypoints that navigation used of the last image (green)' : ''}`;
-    else this.gridLabel.textContent = `RTN ${this.options.axes}, about the ${this.options.centre} · grid ${this.spacing >= 1000 ? `${this.spacing / 1000} km` : `${+this.spacing.toPrecision(3)} m`}${keepOut}`;
+    else this.gridLabel.textContent = `RTN ${this.options.axes}, about ${this.runs[0].isPropagation ? '' : 'the '}${this[this.options.centre].userData.name} · grid ${this.spacing >= 1000 ? `${this.spacing / 1000} km` : `${+this.spacing.toPrecision(3)} m`}${keepOut}`;
   }
 
   #placeLabels() {
     const { clientWidth: width, clientHeight: height } = this.element;
+    const [above, below] = [this.servicerLabel, this.targetLabel].map((label) => label.position.clone().project(this.camera));
+    // Names of spacecraft that are beside each other stand one below the other.
+    const isNear = Math.abs(above.x - below.x) * width < 340 && Math.abs(above.y - below.y) * height < 28;
+    this.targetLabel.element.style.marginTop = isNear ? '15px' : '';
     for (const { element, position, visible, kind } of this.labels) {
       const p = position.clone().project(this.camera);
       const shown = visible && !(this.through && (kind === 'waypoint' || element === this.servicerLabel.element)) && p.z < 1 && Math.abs(p.x) < 1.05 && Math.abs(p.y) < 1.05;

@@ -82,7 +82,8 @@ export class TimeBar {
     this.faults = faultsOf(run);
     this.eclipses = run.eclipses;
     this.pictures = run.pictures.map((picture) => ({ begin: picture.time_s, end: picture.time_s, word: `picture ${picture.image}` }));
-    this.lanes = [{ name: 'burns', height: 20, draw: 'burns' }, { name: 'mode', height: 10, items: this.modes, colour: (word) => kModeColours[word] ?? '--c5' },
+    this.lanes = run.isPropagation ? [] : [
+                  { name: 'burns', height: 20, draw: 'burns' }, { name: 'mode', height: 10, items: this.modes, colour: (word) => kModeColours[word] ?? '--c5' },
                   ...[...aidLanes(run)].map(([name, items]) => ({ name, height: 9, items, colour: (word) => kAidColours[word] ?? '--c5' }))];
     if (this.faults.length) this.lanes.push({ name: 'faults', height: 10, items: this.faults, colour: () => '--bad' });
     this.height = 20 + this.lanes.reduce((sum, lane) => sum + lane.height + 3, 0) + 16;

@@ -29,3 +29,5 @@ const kEndings = [['_radps', 'rad/s'], ['_mps2', 'm/s²'], ['_mps', 'm/s'], ['_a
                   ['_km', 'km'], ['_mm', 'mm'], ['_px', 'px'], ['_ms', 'ms'], ['_ns', 'ns'], ['_m2', 'm²'], ['_m', 'm'], ['_s', 's']];
 /** The unit in a column's name; empty if it has none. */
 export const unitOf = (column) => kEndings.find(([ending]) => column.endsWith(ending))?.[1] ?? '';
+/** A column's name without its unit, which a plot may show in another one. */
+export const withoutUnit = (column) => column.slice(0, column.length - (kEndings.find(([ending]) => column.endsWith(ending))?.[0].length ?? 0));

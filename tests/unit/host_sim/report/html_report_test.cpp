@@ -338,5 +338,18 @@ TEST_F(HtmlReport, RunsSideBySideAreAPageToo) {
   EXPECT_EQ(complaints(html_comparison(runs)), "");
 }
 
+TEST_F(HtmlReport, RunsAreDrawnOverEachOther) {
+  const std::vector<ComparedRun> runs{{"first", synthetic_run()}, {"second", synthetic_run()}};
+  const std::string page = html_comparison(runs);
+  for (const char* const heading : {"Flights over each other", "Trajectories"}) {
+    const std::size_t begin = page.find(std::string(heading) + "</h2>");
+    ASSERT_NE(begin, std::string::npos) << heading;
+    const std::string section = page.substr(begin, page.find("<h2", begin) - begin);
+    for (const char* const name : {"first", "second"}) EXPECT_THAT(section, HasSubstr(name)) << heading;
+  }
+  EXPECT_THAT(page, HasSubstr("Error of the relative position"));
+  EXPECT_THAT(page, HasSubstr("T-R, "));
+}
+
 }  // namespace
 }  // namespace vbar::report::test
