@@ -13,6 +13,7 @@
 #include "host_sim/mission/mission_document.h"
 #include "host_sim/mission/name_search.h"
 #include "host_sim/mission/read_sections.h"
+#include "host_sim/mission/rtn_waypoints.h"
 #include "host_sim/mission/toml_file.h"
 
 namespace vbar::mission {
@@ -64,6 +65,7 @@ void with_document(std::string_view text, const std::filesystem::path& file, std
   Mission mission;
   mission.file = file;
   for (const Section& section : kSections) section.read(document, mission, installation);
+  place_rtn_waypoints(document, mission);
   check_testbeds(document, mission, installation);
   document.finish();
   mission.data_files = document.data_files();

@@ -21,6 +21,7 @@
 
 #include "fsw/core/gps_time.h"
 #include "fsw/orbit/elements.h"
+#include "fsw/orbit/rtn.h"
 #include "fsw/packets/messages.h"
 #include "host_sim/engine/clock.h"
 #include "host_sim/engine/link_model.h"
@@ -28,6 +29,7 @@
 #include "host_sim/mission/mission_error.h"
 #include "host_sim/mission/udp_address.h"
 #include "host_sim/truth/truth_settings.h"
+#include "host_sim/twins/thruster_properties.h"
 
 namespace vbar::mission {
 
@@ -199,9 +201,10 @@ struct Fault {
 
 /// actuators.thruster; 1-sigma errors of each burn.
 struct Thruster {
-  double magnitude_error = 0.0;     ///< relative
-  double pointing_error_rad = 0.0;  ///< about each of two axes across the burn
-  double max_thrust_n = 0.0;        ///< for a check of burn durations only; 0: not stated
+  double magnitude_error = 0.0;                     ///< relative
+  double pointing_error_rad = 0.0;                  ///< about each of two axes across the burn
+  double max_thrust_n = 0.0;                        ///< for a check of burn durations only; 0: not stated
+  std::optional<twins::ThrusterProperties> finite;  ///< burns with a duration; without it impulses
 };
 
 struct Spacecraft {
@@ -238,6 +241,7 @@ struct Waypoint {
   fsw::GpsTime time;
   fsw::Vector6 a_roe_m =
       fsw::Vector6::Zero();  ///< mean ROE of the target with respect to the servicer, times the reference a
+  std::optional<fsw::orbit::RelativeState> target_rtn;  ///< as stated in place of a_roe_m (rtn_waypoints.h)
   Solver solver{waypoint::kSolverClosedForm};
   std::optional<double> keep_out_radius_m;  ///< radius for the leg that ends here; default: that of guidance
 };

@@ -21,11 +21,14 @@ struct Replacement {
   std::string_view key;
   std::array<std::string_view, 3> replaced;
 };
-constexpr std::array<Replacement, 5> kReplacements{{{"elements", {"relative", "orbit_file", "orbit_object"}},
+constexpr std::array<Replacement, 8> kReplacements{{{"elements", {"relative", "orbit_file", "orbit_object"}},
                                                     {"relative", {"elements", "orbit_file", "orbit_object"}},
                                                     {"orbit_file", {"elements", "relative"}},
                                                     {"waypoint", {"a_roe_m"}},
-                                                    {"a_roe_m", {"waypoint"}}}};
+                                                    {"a_roe_m", {"waypoint", "position_rtn_m", "velocity_rtn_mps"}},
+                                                    {"position_rtn_m", {"a_roe_m"}},
+                                                    {"focal_length_mm", {"field_of_view_deg"}},
+                                                    {"field_of_view_deg", {"focal_length_mm"}}}};
 
 }  // namespace
 

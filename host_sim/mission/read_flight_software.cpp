@@ -60,12 +60,22 @@ namespace {
 
 constexpr double kLargestARoe_m = 1e6;  // limit of the flight software
 
+constexpr double kLargestRtn_m = 1e5;  // beyond 100 km relative elements are to be stated
+
 Waypoint read_waypoint(const TableReader& section, const Mission& mission) {
   Waypoint waypoint;
   waypoint.index = static_cast<int>(section.integer("index", 0, 9999));
   waypoint.time = mission.epoch + section.span("time_h", kHour_s, from_to(0.0, kLongestMission_h));
-  const auto a_roe_m = section.six_numbers("a_roe_m", from_to(-kLargestARoe_m, kLargestARoe_m));
-  waypoint.a_roe_m = Eigen::Map<const fsw::Vector6>(a_roe_m.data());
+  if (section.has("position_rtn_m")) {
+    if (section.has("a_roe_m")) section.refuse("position_rtn_m", "both position_rtn_m and a_roe_m", "one of them");
+    const auto position_m = section.numbers("position_rtn_m", 3, 3, from_to(-kLargestRtn_m, kLargestRtn_m));
+    const auto velocity_mps = section.numbers("velocity_rtn_mps", 3, 3, from_to(-100.0, 100.0));
+    waypoint.target_rtn = {Eigen::Map<const fsw::Vector3>(position_m.data()),
+                           Eigen::Map<const fsw::Vector3>(velocity_mps.data())};
+  } else {
+    const auto a_roe_m = section.six_numbers("a_roe_m", from_to(-kLargestARoe_m, kLargestARoe_m));
+    waypoint.a_roe_m = Eigen::Map<const fsw::Vector6>(a_roe_m.data());
+  }
   waypoint.solver = section.choice<Solver>("solver", kSolvers, Waypoint{}.solver);
   if (section.has("keep_out_radius_m"))
     waypoint.keep_out_radius_m = section.number("keep_out_radius_m", from_to(0.0, 1e5));

@@ -1,6 +1,7 @@
 #include "host_sim/sensors/settings/camera_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "fsw/vision/imaging/image.h"
@@ -100,6 +101,16 @@ void check_region(const TableReader& section, const DetectorSettings& detector, 
                    "at most the " + std::to_string(fsw::imaging::kMaxPixels) + " that the flight software holds");
 }
 
+/// The field across the width of the detector states the focal length.
+void read_field_of_view(const TableReader& section, CameraSettings& camera) {
+  if (!section.has("field_of_view_deg")) return;
+  if (section.has("focal_length_mm"))
+    section.refuse("field_of_view_deg", "both focal_length_mm and field_of_view_deg", "one of them");
+  const double field_rad = section.number("field_of_view_deg", above_to(0.0, 120.0)) * M_PI / 180.0;
+  const double width_mm = 1e-3 * camera.detector.width * camera.detector.pixel_pitch_um;
+  camera.optics.focal_length_mm = 0.5 * width_mm / std::tan(0.5 * field_rad);
+}
+
 }  // namespace
 
 CameraSettings CameraFile::settings() const {
@@ -116,6 +127,7 @@ void read_camera_settings(const TableReader& section, CameraFile& camera) {
   read_optics(section.table("optics"), single.optics);
   const TableReader detector = section.table("detector");
   read_detector(detector, single.detector);
+  read_field_of_view(section.table("optics"), single);
   read_binning_and_gain(detector, camera);
   const double brightest_dn = (1 << single.detector.bits) - 1;
   if (!(single.detector.offset_dn < 0.5 * brightest_dn))

@@ -57,6 +57,18 @@ TEST(CameraKeys, DefaultIsTheOpticalStimulator) {
 }
 
 // What a camera file leaves out is the Optical Stimulator's: its own file says nothing else.
+TEST(CameraKeys, AFieldOfViewStatesTheFocalLength) {
+  // 1920 pixels of 5.86 um: 11.2512 mm of detector; 5.6256 mm over tan 6 deg.
+  const std::string optics = "spacecraft.servicer.sensors.camera.optics.";
+  const auto focal_length_mm = [](const Mission& mission) {
+    return sensor_of<CameraSensor>(mission).settings.optics.focal_length_mm;
+  };
+  const std::string file = vbar::tests::source_path("missions/experiment1.toml").string();
+  EXPECT_NEAR(focal_length_mm(load_mission(file, {{optics + "field_of_view_deg=12"}})), 53.5240, 1e-3);
+  EXPECT_EQ(focal_length_mm(load_mission(file, {{optics + "field_of_view_deg=12"}, {optics + "focal_length_mm=20"}})),
+            20.0);
+}
+
 TEST(CameraKeys, TheOpticalStimulatorsFileIsTheDefault) {
   const auto file = load_camera(vbar::tests::source_path("data/cameras/optical_stimulator.toml")).settings();
   const twins::camera::CameraSettings usual;
