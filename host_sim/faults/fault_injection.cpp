@@ -194,7 +194,7 @@ twins::Execution FaultyThruster::execute(const vbar::maneuver_command& command, 
     }
   }
   if (command.maneuver_id >= kFirstUncommanded) {
-    twins::Execution execution = thruster_->execute(command, burn_time, now);
+    twins::Execution execution = thruster_->leak(command, burn_time);
     const bool is_told = std::ranges::any_of(schedule_->faults(), [&](const mission::Fault& fault) {
       return fault.kind == mission::FaultKind::kThrustUncommanded && fault.is_present(burn_time) && fault.is_reported;
     });
@@ -205,7 +205,7 @@ twins::Execution FaultyThruster::execute(const vbar::maneuver_command& command, 
   vbar::maneuver_command scaled = command;
   for (double& dv : scaled.dv_rtn) dv *= scale;
   twins::Execution execution = thruster_->execute(scaled, burn_time, now);
-  if (!is_reported) execution.packet = thruster_->execute(command, burn_time, now).packet;
+  if (!is_reported) execution.packet = thruster_->pretended_report(command, burn_time);
   return execution;
 }
 

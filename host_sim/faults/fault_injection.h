@@ -78,6 +78,9 @@ class FaultyThruster final : public twins::Actuator {
 
   /// A report that is not to be sent has no packet.
   twins::Execution execute(const vbar::maneuver_command& command, fsw::GpsTime burn_time, fsw::GpsTime now) override;
+  [[nodiscard]] fsw::Duration lead(const vbar::maneuver_command& command) const override {
+    return command.maneuver_id < kFirstUncommanded ? thruster_->lead(command) : fsw::Duration{};
+  }
 
  private:
   std::unique_ptr<twins::Actuator> thruster_;

@@ -28,6 +28,7 @@
 #include "host_sim/mission/mission_error.h"
 #include "host_sim/mission/udp_address.h"
 #include "host_sim/truth/truth_settings.h"
+#include "host_sim/twins/thruster_properties.h"
 
 namespace vbar::mission {
 
@@ -199,9 +200,10 @@ struct Fault {
 
 /// actuators.thruster; 1-sigma errors of each burn.
 struct Thruster {
-  double magnitude_error = 0.0;     ///< relative
-  double pointing_error_rad = 0.0;  ///< about each of two axes across the burn
-  double max_thrust_n = 0.0;        ///< for a check of burn durations only; 0: not stated
+  double magnitude_error = 0.0;                     ///< relative
+  double pointing_error_rad = 0.0;                  ///< about each of two axes across the burn
+  double max_thrust_n = 0.0;                        ///< for a check of burn durations only; 0: not stated
+  std::optional<twins::ThrusterProperties> finite;  ///< burns with a duration; without it impulses
 };
 
 struct Spacecraft {

@@ -203,11 +203,44 @@ FlightComputer read_flight_computer(const TableReader& section) {
   return computer;
 }
 
-Thruster read_thruster(const TableReader& section) {
+constexpr std::array kFiniteKeys = {"specific_impulse_s", "propellant_kg", "minimum_impulse_mns",
+                                    "maximum_on_time_s",  "rise_s",        "fall_s"};
+
+/// Reads a thruster whose burns have a duration.
+twins::ThrusterProperties read_finite_thruster(const TableReader& section, double mass_kg) {
+  twins::ThrusterProperties finite;
+  finite.thrust_n = section.number("thrust_n", above_to(0.0, 1e6), 0.0);
+  for (const char* const required : {"specific_impulse_s", "propellant_kg"})
+    if (!section.has(required)) section.refuse(required, "nothing", "a number: thrust_n is stated");
+  finite.specific_impulse_s = section.number("specific_impulse_s", from_to(1.0, 1e5), 0.0);
+  finite.propellant_kg = section.number("propellant_kg", above_to(0.0, 1e6), 0.0);
+  if (!(finite.propellant_kg < mass_kg))
+    section.refuse("propellant_kg", fmt::format("{} kg of a spacecraft of {} kg", finite.propellant_kg, mass_kg),
+                   "less than mass_kg, which includes it");
+  finite.minimum_impulse_ns = 1e-3 * section.number("minimum_impulse_mns", from_to(0.0, 1e9), 0.0);
+  finite.maximum_on_time_s = section.number("maximum_on_time_s", above_to(0.0, 3600.0), 300.0);
+  finite.rise_s = section.number("rise_s", from_to(0.0, 100.0), 0.0);
+  finite.fall_s = section.number("fall_s", from_to(0.0, 100.0), 0.0);
+  const double longest_ns = finite.thrust_n * finite.maximum_on_time_s;
+  if (longest_ns < finite.minimum_impulse_ns)
+    section.refuse("maximum_on_time_s", fmt::format("{} s, {} N s", finite.maximum_on_time_s, longest_ns),
+                   "a time in which thrust_n gives minimum_impulse_mns");
+  if (section.has("max_thrust_n")) section.refuse("max_thrust_n", "a second thrust", "thrust_n alone");
+  return finite;
+}
+
+Thruster read_thruster(const TableReader& section, double mass_kg) {
   Thruster thruster;
   thruster.magnitude_error = 1e-2 * section.number("magnitude_error_percent", from_to(0.0, 20.0), 0.0);
   thruster.pointing_error_rad = kDegree * section.number("pointing_error_deg", from_to(0.0, 30.0), 0.0);
   thruster.max_thrust_n = section.number("max_thrust_n", from_to(0.0, 1e6), 0.0);
+  if (section.has("thrust_n")) {
+    thruster.finite = read_finite_thruster(section, mass_kg);
+  } else {
+    for (const char* const key : kFiniteKeys)
+      if (section.has(key))
+        section.refuse(key, "a key of burns with a duration", "it with thrust_n: burns are impulses");
+  }
   return thruster;
 }
 
@@ -258,7 +291,8 @@ Spacecraft read_one(TableReader& section, const Member& member, Fleet& fleet, co
 
   spacecraft.sensors = read_sensors(section.table("sensors"), {mission, installation, spacecraft.name, fleet.names});
   const TableReader actuators = section.table("actuators");
-  if (actuators.has("thruster")) spacecraft.thruster = read_thruster(actuators.table("thruster"));
+  if (actuators.has("thruster"))
+    spacecraft.thruster = read_thruster(actuators.table("thruster"), spacecraft.surface.mass_kg);
   return spacecraft;
 }
 

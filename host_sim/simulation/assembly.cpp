@@ -15,6 +15,7 @@
 #include "host_sim/faults/fault_injection.h"
 #include "host_sim/faults/fault_log.h"
 #include "host_sim/faults/fault_schedule.h"
+#include "host_sim/installation/burn_limits.h"
 #include "host_sim/installation/expected_accelerations.h"
 #include "host_sim/installation/sensor_kinds.h"
 #include "host_sim/report/summarise.h"
@@ -23,6 +24,7 @@
 #include "host_sim/simulation/initial_state.h"
 #include "host_sim/simulation/recorders.h"
 #include "host_sim/twins/actuator.h"
+#include "host_sim/twins/finite_thruster.h"
 #include "host_sim/twins/packet_source.h"
 
 namespace vbar::app {
@@ -53,12 +55,21 @@ std::string StartedSources::stop(twins::StopReason reason) {
 }
 
 std::unique_ptr<twins::Actuator> make_thruster(const mission::Mission& mission, const mission::Spacecraft& spacecraft) {
-  twins::IdealThruster::Settings settings;
-  settings.spacecraft_number = spacecraft.number;
-  settings.magnitude_error = spacecraft.thruster->magnitude_error;
-  settings.pointing_error_rad = spacecraft.thruster->pointing_error_rad;
-  return std::make_unique<twins::IdealThruster>(settings,
-                                                engine::RandomStream(mission.seed, spacecraft.name + "/thruster"));
+  const mission::Thruster& thruster = *spacecraft.thruster;
+  const engine::RandomStream stream(mission.seed, spacecraft.name + "/thruster");
+  const twins::BurnErrors errors{thruster.magnitude_error, thruster.pointing_error_rad};
+  if (!thruster.finite) {
+    return std::make_unique<twins::IdealThruster>(
+        twins::IdealThruster::Settings{.spacecraft_number = spacecraft.number, .errors = errors}, stream);
+  }
+  const twins::FiniteThruster::Settings settings{
+      .spacecraft_number = spacecraft.number,
+      .errors = errors,
+      .thruster = *thruster.finite,
+      .mass_kg = true_surface(mission, spacecraft).mass_kg,
+      .nominal_mass_kg = spacecraft.surface.mass_kg,
+  };
+  return std::make_unique<twins::FiniteThruster>(settings, stream);
 }
 
 namespace {
@@ -142,8 +153,9 @@ std::vector<twins::Packet> telecommands_at_start(const mission::Mission& mission
   const auto state_at_start = [&](std::string_view spacecraft) {
     return truth.state(truth.index_of(std::string(spacecraft)));
   };
-  const mission::Mission covered =
+  mission::Mission covered =
       sensors::with_expected_accelerations(mission, servicer, truth.data(), state_at_start(servicer.name)).mission;
+  sensors::limit_burns(servicer, covered.guidance.configuration);
   return sensors::telecommands_of({covered, servicer, data_directory, *truth.data().earth_orientation, state_at_start});
 }
 
@@ -381,6 +393,8 @@ std::vector<std::string> AssembledMission::data_notes() const {
                                            model_.model().state(servicer_.name))
           .notes;
   notes.insert(notes.end(), of_navigation.begin(), of_navigation.end());
+  const std::string of_burns = sensors::note_on_burns(servicer_, mission_.guidance.configuration);
+  if (!of_burns.empty()) notes.push_back(of_burns);
   return notes;
 }
 

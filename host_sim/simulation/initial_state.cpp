@@ -98,7 +98,8 @@ CartesianState state_about(const mission::Mission& mission, const mission::Orbit
   return state_of(fsw::orbit::qns_from_roe(chief_mean, roe), spacecraft);
 }
 
-/// Returns the surface properties with the true mass.
+}  // namespace
+
 truth::SurfaceProperties true_surface(const mission::Mission& mission, const mission::Spacecraft& spacecraft) {
   truth::SurfaceProperties surface = spacecraft.surface;
   surface.mass_kg += mission::drawn_mass_error_kg(mission.seed, spacecraft.name, spacecraft.mass_sigma_kg);
@@ -106,6 +107,14 @@ truth::SurfaceProperties true_surface(const mission::Mission& mission, const mis
     throw std::runtime_error("spacecraft \"" + spacecraft.name +
                              "\": the mass drawn with its mass_sigma_kg is not positive");
   return surface;
+}
+
+namespace {
+
+truth::SpacecraftSettings settings_of(const mission::Mission& mission, const mission::Spacecraft& spacecraft,
+                                      const CartesianState& state) {
+  const bool burns_last = spacecraft.thruster && spacecraft.thruster->finite;
+  return {spacecraft.name, state, true_surface(mission, spacecraft), burns_last};
 }
 
 }  // namespace
@@ -121,18 +130,16 @@ void place_spacecraft(const mission::Mission& mission, const std::filesystem::pa
                       truth::TruthModel& truth) {
   for (const mission::Spacecraft& spacecraft : mission.spacecraft) {
     if (const auto* orbit = std::get_if<mission::OrbitByElements>(&spacecraft.orbit)) {
-      truth.add_spacecraft({spacecraft.name, state_at_epoch(*orbit, spacecraft), true_surface(mission, spacecraft)});
+      truth.add_spacecraft(settings_of(mission, spacecraft, state_at_epoch(*orbit, spacecraft)));
     }
     if (const auto* orbit = std::get_if<mission::OrbitByFile>(&spacecraft.orbit)) {
-      truth.add_spacecraft({spacecraft.name, state_at_epoch(*orbit, spacecraft, data_directory, truth),
-                            true_surface(mission, spacecraft)});
+      truth.add_spacecraft(settings_of(mission, spacecraft, state_at_epoch(*orbit, spacecraft, data_directory, truth)));
     }
   }
   truth.advance_to(mission.start_time());
   for (const mission::Spacecraft& spacecraft : mission.spacecraft) {
     if (const auto orbit = relative_orbit(mission, spacecraft)) {
-      truth.add_spacecraft(
-          {spacecraft.name, state_about(mission, *orbit, spacecraft, truth), true_surface(mission, spacecraft)});
+      truth.add_spacecraft(settings_of(mission, spacecraft, state_about(mission, *orbit, spacecraft, truth)));
     }
   }
 }

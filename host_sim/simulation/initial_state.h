@@ -13,6 +13,10 @@ namespace vbar::app {
 /// data file that the mission names and that cannot be opened.
 truth::TruthSettings truth_settings(const mission::Mission& mission, const std::filesystem::path& data_directory);
 
+/// Returns the surface properties of a spacecraft with its true mass, drawn from the seed. Throws std::runtime_error if
+/// that is not positive.
+truth::SurfaceProperties true_surface(const mission::Mission& mission, const mission::Spacecraft& spacecraft);
+
 /// Adds every spacecraft of `mission` to `truth`, which stands at the mission's epoch, in the mission's order of kinds:
 /// those given by elements or by a file (absolute, or in `data_directory`) fly from the epoch to the start unburned;
 /// those given by a waypoint or by ROE are then placed about the spacecraft they refer to, by its true mean elements at

@@ -26,6 +26,7 @@ class RunTruth final : public twins::TrueWorld, public twins::TruthOutlook {
   void advance_to(fsw::GpsTime time) override { truth_.advance_to(time); }
   [[nodiscard]] twins::TruthSnapshot snapshot(twins::TruthDetail detail) override;
   void apply_impulse_rtn(const fsw::Vector3& dv_rtn) override { truth_.apply_impulse_rtn(servicer_, dv_rtn); }
+  void begin_burn(const truth::ThrustArc& arc) override { truth_.begin_burn(servicer_, arc); }
   void point(fsw::GpsTime time, const fsw::Vector3& boresight_rtn, const fsw::Vector3& boresight_rate_rtn) override;
   [[nodiscard]] double wall_s() const override { return truth_.statistics().wall_s; }
 

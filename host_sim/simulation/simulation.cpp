@@ -101,8 +101,7 @@ void Simulation::schedule_timetable() {
     const GpsTime time = timetable_.waypoints[k];
     if (time >= timetable_.start && time <= timetable_.end) schedule(time, JudgeWaypoint{k});
   }
-  for (std::size_t k = 0; k < timetable_.burns.size(); ++k)
-    schedule(timetable_.burns[k].time, ExecutePrescribedBurn{k});
+  for (std::size_t k = 0; k < timetable_.burns.size(); ++k) schedule_prescribed(k);
   schedule_more_burns();
   if (!timetable_.uplink) return;
   for (const twins::Packet& packet : timetable_.uplink->packets)
@@ -114,8 +113,13 @@ void Simulation::schedule_more_burns() {
   for (const Timetable::Burn& burn : world_.more_burns()) {
     if (burn.time > timetable_.end) continue;
     timetable_.burns.push_back(burn);
-    schedule(burn.time, ExecutePrescribedBurn{timetable_.burns.size() - 1});
+    schedule_prescribed(timetable_.burns.size() - 1);
   }
+}
+
+void Simulation::schedule_prescribed(std::size_t index) {
+  schedule(timetable_.burns[index].time - world_.thruster.lead(prescribed_command(index)),
+           ExecutePrescribedBurn{index});
 }
 
 void Simulation::schedule_measurement(std::size_t source, GpsTime from) {
@@ -290,10 +294,11 @@ void Simulation::take_commands(const pil::StepResult& answer) {
     const auto command = fsw::packets::decode<maneuver_command>(packet.value());
     if (!command.ok()) continue;
     const GpsTime time = packet.value().header.time;
-    if (time < effective) {
+    const GpsTime begin = time - world_.thruster.lead(command.value());
+    if (begin < effective) {
       report_execution(world_.thruster.execute(command.value(), time, effective));
-    } else if (time <= timetable_.end) {
-      schedule(time, ExecuteBurn{command.value()});
+    } else if (begin <= timetable_.end) {
+      schedule(begin, ExecuteBurn{command.value(), time});
     }
   }
 }
@@ -311,27 +316,42 @@ void Simulation::point(const fsw::packets::PacketView& packet, GpsTime effective
 }
 
 void Simulation::handle(const ExecuteBurn& burn) {
-  execute(burn.command);
+  execute(burn.command, burn.time);
+}
+
+maneuver_command Simulation::prescribed_command(std::size_t index) const {
+  maneuver_command command{};
+  command.maneuver_id = timetable_.burns[index].id;
+  command.waypoint_index = -1;
+  command.solver = waypoint::kSolverNone;
+  const fsw::Vector3& dv_rtn = timetable_.burns[index].dv_rtn;
+  std::copy(dv_rtn.begin(), dv_rtn.end(), command.dv_rtn);
+  return command;
 }
 
 void Simulation::handle(const ExecutePrescribedBurn& prescribed) {
-  maneuver_command command{};
-  command.maneuver_id = timetable_.burns[prescribed.index].id;
-  command.waypoint_index = -1;
-  command.solver = waypoint::kSolverNone;
-  const fsw::Vector3& dv_rtn = timetable_.burns[prescribed.index].dv_rtn;
-  std::copy(dv_rtn.begin(), dv_rtn.end(), command.dv_rtn);
-  for (RunObserver* observer : world_.observers) observer->on_prescribed(events_.now(), command);
-  execute(command);
+  const maneuver_command command = prescribed_command(prescribed.index);
+  const GpsTime time = timetable_.burns[prescribed.index].time;
+  for (RunObserver* observer : world_.observers) observer->on_prescribed(time, command);
+  execute(command, time);
 }
 
-void Simulation::execute(const maneuver_command& command) {
+void Simulation::execute(const maneuver_command& command, GpsTime burn_time) {
   const GpsTime now = events_.now();
   world_.truth.advance_to(now);
-  const twins::Execution execution = world_.thruster.execute(command, now, now);
+  const twins::Execution execution = world_.thruster.execute(command, burn_time, now);
+  if (execution.arc) {
+    world_.truth.begin_burn(*execution.arc);
+    return schedule(now + fsw::nearest_duration(execution.arc->end_s() - execution.arc->begin_s),
+                    ReportBurn{execution});
+  }
   const double(&dv)[3] = execution.maneuver.dv_rtn;
   world_.truth.apply_impulse_rtn({dv[0], dv[1], dv[2]});
   report_execution(execution);
+}
+
+void Simulation::handle(const ReportBurn& ended) {
+  report_execution(ended.execution);
 }
 
 void Simulation::report_execution(const twins::Execution& execution) {

@@ -128,13 +128,18 @@ class Simulation {
   struct ExecuteBurn {
     static constexpr std::int32_t kPriority = 40;
     maneuver_command command;
+    fsw::GpsTime time;  ///< tag of the command
+  };
+  struct ReportBurn {
+    static constexpr std::int32_t kPriority = 40;
+    twins::Execution execution;
   };
   struct ExecutePrescribedBurn {
     static constexpr std::int32_t kPriority = 40;
     std::size_t index;
   };
   using Event = std::variant<TakeMeasurement, CollectPending, DeliverPacket, JudgeWaypoint, StepFlight, ExecuteBurn,
-                             ExecutePrescribedBurn>;
+                             ExecutePrescribedBurn, ReportBurn>;
 
   void handle(const TakeMeasurement& taken);
   void handle(const CollectPending& collected);
@@ -143,11 +148,13 @@ class Simulation {
   void handle(const StepFlight&);
   void handle(const ExecuteBurn& burn);
   void handle(const ExecutePrescribedBurn& prescribed);
+  void handle(const ReportBurn& ended);
 
   template <class E>
   void schedule(fsw::GpsTime time, E event);
   void schedule_timetable();
   void schedule_more_burns();
+  void schedule_prescribed(std::size_t index);
   void schedule_measurement(std::size_t source, fsw::GpsTime from);
   bool wait_until_due(const Event& event);
   void fly();
@@ -160,7 +167,8 @@ class Simulation {
   void fail(std::size_t source, fsw::GpsTime epoch, const std::string& reason);
   void take_commands(const pil::StepResult& answer);
   void point(const fsw::packets::PacketView& packet, fsw::GpsTime effective);
-  void execute(const maneuver_command& command);
+  void execute(const maneuver_command& command, fsw::GpsTime burn_time);
+  [[nodiscard]] maneuver_command prescribed_command(std::size_t index) const;
   void report_execution(const twins::Execution& execution);
   [[nodiscard]] twins::Packet make_tick();
   [[nodiscard]] double mission_seconds(fsw::GpsTime time) const { return fsw::seconds(time - timetable_.start); }

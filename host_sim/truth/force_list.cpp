@@ -16,6 +16,7 @@
 #include "host_sim/truth/forces/gravity_coefficients.h"
 #include "host_sim/truth/forces/radiation_pressure.h"
 #include "host_sim/truth/forces/solid_tides.h"
+#include "host_sim/truth/forces/thrust_force.h"
 
 namespace vbar::truth {
 
@@ -106,6 +107,7 @@ std::vector<std::unique_ptr<Force>> make_forces(const TruthSettings& settings, c
     forces.push_back(std::make_unique<SolidTidesForce>(data.gravity->gm(), data.gravity->radius(), data.tide_system,
                                                        settings.epoch, data.earth_orientation));
   }
+  if (spacecraft.burns_last) forces.push_back(std::make_unique<ThrustForce>());
   if (model.relativity) forces.push_back(std::make_unique<RelativityForce>(data.gravity->gm()));
   return forces;
 }

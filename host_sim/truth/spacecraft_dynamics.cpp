@@ -37,6 +37,7 @@ SpacecraftDynamics::SpacecraftDynamics(std::string name, double gm, double earth
       forces_(std::move(forces)),
       times_ns_(forces_.size() + 1) {
   for (const auto& force : forces_) {
+    if (auto* const thrust = dynamic_cast<ThrustForce*>(force.get())) thrust_ = thrust;
     needs_sun_and_moon_ = needs_sun_and_moon_ || force->needs_sun_and_moon();
     for (int index = 0; index < force->edge_count(); ++index) edges_.push_back({force.get(), index});
   }
@@ -131,6 +132,11 @@ double SpacecraftDynamics::next_jump_after(double seconds) const {
   double first = std::numeric_limits<double>::infinity();
   for (const auto& force : forces_) first = std::min(first, force->next_jump_after(seconds));
   return first;
+}
+
+void SpacecraftDynamics::add_burn(const ThrustArc& arc) {
+  if (thrust_ == nullptr) throw std::logic_error(fmt::format("spacecraft \"{}\": its burns are impulses", name_));
+  thrust_->add(arc);
 }
 
 void SpacecraftDynamics::measure_time(bool on) {

@@ -16,6 +16,7 @@
 #include "host_sim/truth/earth/earth_rotation.h"
 #include "host_sim/truth/earth/sun_moon.h"
 #include "host_sim/truth/forces/force.h"
+#include "host_sim/truth/forces/thrust_force.h"
 
 namespace vbar::truth {
 
@@ -83,6 +84,10 @@ class SpacecraftDynamics {
   /// Returns the first date after `seconds` at which a force jumps by itself.
   double next_jump_after(double seconds) const;
 
+  /// Adds a burn with a duration, not before the instant of the regime. Throws std::logic_error for a spacecraft whose
+  /// burns are impulses, std::invalid_argument for a burn that begins before the last one has ended.
+  void add_burn(const ThrustArc& arc);
+
   /// Returns the inputs of forces and torques at an instant. The Sun and the Moon only if a force needs them or
   /// provide_sun_and_moon() was called.
   ForceInput input_at(double seconds, const fsw::orbit::CartesianState& state);
@@ -116,6 +121,7 @@ class SpacecraftDynamics {
   EarthRotation earth_rotation_;
   SunMoonInterpolator sun_moon_;
   std::vector<std::unique_ptr<Force>> forces_;
+  ThrustForce* thrust_ = nullptr;  ///< among the forces; null: burns are impulses
   bool needs_sun_and_moon_ = false;
   std::vector<EdgeOfForce> edges_;
   ForceRegime regime_;

@@ -185,6 +185,18 @@ void SpacecraftPropagator::apply_impulse_rtn(const fsw::Vector3& dv_rtn) {
   });
 }
 
+void SpacecraftPropagator::begin_burn(const ThrustArc& arc) {
+  if (arc.begin_s != current_)
+    throw std::invalid_argument(fmt::format("spacecraft \"{}\": a burn begins at another time than now", name()));
+  naming(name(), [&] {
+    if (current_ < integrator_.time()) retake_last_step_to(current_);
+    dynamics_->add_burn(arc);
+    dynamics_->enter_regime_of(current_, cartesian(integrator_.state()));
+    integrator_.restart(integrator_.state());
+    if (attitude_) attitude_->orbit_changed(current_);
+  });
+}
+
 void SpacecraftPropagator::retake_last_step_to(double seconds) {
   // The step may have ended at an edge or a jump, and the forces been set to what follows.
   dynamics_->set_regime(regime_of_last_step_);

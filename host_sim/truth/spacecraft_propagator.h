@@ -68,6 +68,9 @@ class SpacecraftPropagator {
   /// Adds `dv_rtn` (m/s, in the spacecraft's own RTN) to the velocity at the current time.
   void apply_impulse_rtn(const fsw::Vector3& dv_rtn);
 
+  /// Begins a burn with a duration at the current time, `arc.begin_s`. Throws as SpacecraftDynamics::add_burn().
+  void begin_burn(const ThrustArc& arc);
+
   /// Returns whether advance_to(seconds) would have to integrate.
   bool needs_steps_to(double seconds) const { return integrator_.time() < seconds; }
 

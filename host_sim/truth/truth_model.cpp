@@ -189,6 +189,12 @@ void TruthModel::apply_impulse_rtn(std::size_t index, const fsw::Vector3& dv_rtn
   spacecraft_.at(index)->apply_impulse_rtn(dv_rtn);
 }
 
+void TruthModel::begin_burn(std::size_t index, ThrustArc arc) {
+  const WallClock clock(wall_s_);
+  arc.begin_s = seconds_after_epoch(time_);
+  spacecraft_.at(index)->begin_burn(arc);
+}
+
 TruthStatistics TruthModel::statistics() const {
   TruthStatistics sum;
   for (const auto& spacecraft : spacecraft_) {
@@ -211,6 +217,20 @@ void TruthModel::measure_force_times(bool on) {
   for (const auto& spacecraft : spacecraft_) spacecraft->dynamics().measure_time(on);
 }
 
+namespace {
+
+/// Adds a time to that of the same force; not all spacecraft have all forces.
+void add_to(std::vector<ForceTime>& sum, const ForceTime& time) {
+  const auto same = std::ranges::find(sum, time.force, &ForceTime::force);
+  if (same == sum.end()) {
+    sum.push_back(time);
+  } else {
+    same->wall_s += time.wall_s;
+  }
+}
+
+}  // namespace
+
 std::vector<ForceTime> TruthModel::force_times() const {
   std::vector<ForceTime> sum;
   for (const auto& spacecraft : spacecraft_) {
@@ -218,7 +238,7 @@ std::vector<ForceTime> TruthModel::force_times() const {
     if (sum.empty()) {
       sum = times;
     } else {
-      for (std::size_t i = 0; i < times.size(); ++i) sum[i].wall_s += times[i].wall_s;
+      for (const ForceTime& time : times) add_to(sum, time);
     }
   }
   return sum;

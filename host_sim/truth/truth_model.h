@@ -95,6 +95,10 @@ class TruthModel {
   /// Adds a velocity (m/s, in the spacecraft's own RTN) at the current time.
   void apply_impulse_rtn(std::size_t index, const fsw::Vector3& dv_rtn);
 
+  /// Begins a burn with a duration at the current time, whatever `arc.begin_s` states. Throws std::logic_error for a
+  /// spacecraft whose burns are impulses.
+  void begin_burn(std::size_t index, ThrustArc arc);
+
   /// Gives a spacecraft an attitude from the current time on. Throws std::invalid_argument for inconsistent settings
   /// (an invalid body, parallel axes, an unknown spacecraft to point at). `later`: the attitudes that follow, in order
   /// of time; the last one of those that begin before the current time, or at it, holds at once, without a slew.

@@ -47,6 +47,7 @@ struct SpacecraftSettings {
   std::string name;
   fsw::orbit::CartesianState osculating;  ///< position and velocity in GCRF
   SurfaceProperties surface;              ///< used by forces on the surface only
+  bool burns_last = false;                ///< its burns have a duration (thrust_force.h)
 };
 
 }  // namespace vbar::truth

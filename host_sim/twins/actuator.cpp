@@ -10,23 +10,20 @@
 
 namespace vbar::twins {
 
-IdealThruster::IdealThruster(const Settings& settings, const engine::RandomStream& stream)
-    : settings_(settings), stream_(stream), encoder_(settings.spacecraft_number, settings.unit) {}
-
-fsw::Vector3 IdealThruster::with_errors(const fsw::Vector3& dv_rtn, std::int32_t maneuver_id,
-                                        std::vector<Note>& notes) const {
+fsw::Vector3 BurnErrors::applied_to(const fsw::Vector3& dv_rtn, std::int32_t maneuver_id,
+                                    const engine::RandomStream& stream, std::vector<Note>& notes) const {
   const double dv = dv_rtn.norm();
-  const bool perfect = settings_.magnitude_error == 0.0 && settings_.pointing_error_rad == 0.0;
+  const bool perfect = magnitude == 0.0 && pointing_rad == 0.0;
   if (perfect || dv == 0.0) return dv_rtn;
 
-  const auto uniforms = stream_.uniforms_of(static_cast<std::uint32_t>(maneuver_id));
-  const double magnitude_error = settings_.magnitude_error * engine::normal_quantile(uniforms[0]);
+  const auto uniforms = stream.uniforms_of(static_cast<std::uint32_t>(maneuver_id));
+  const double magnitude_error = magnitude * engine::normal_quantile(uniforms[0]);
   // A tilt vector across the impulse: its length is the angle.
   const fsw::Vector3 direction = dv_rtn / dv;
   const fsw::Vector3 across_1 = direction.unitOrthogonal();
   const fsw::Vector3 across_2 = direction.cross(across_1);
-  const fsw::Vector3 tilt = settings_.pointing_error_rad * (engine::normal_quantile(uniforms[1]) * across_1 +
-                                                            engine::normal_quantile(uniforms[2]) * across_2);
+  const fsw::Vector3 tilt = pointing_rad * (engine::normal_quantile(uniforms[1]) * across_1 +
+                                            engine::normal_quantile(uniforms[2]) * across_2);
   const double angle = tilt.norm();
   notes.push_back({"magnitude_error", magnitude_error});
   notes.push_back({"pointing_error_rad", angle});
@@ -35,14 +32,17 @@ fsw::Vector3 IdealThruster::with_errors(const fsw::Vector3& dv_rtn, std::int32_t
   return dv * (1.0 + magnitude_error) * tilted;
 }
 
+IdealThruster::IdealThruster(const Settings& settings, const engine::RandomStream& stream)
+    : settings_(settings), stream_(stream), encoder_(settings.spacecraft_number, settings.unit) {}
+
 Execution IdealThruster::execute(const vbar::maneuver_command& command, fsw::GpsTime burn_time, fsw::GpsTime now) {
   Execution execution;
   execution.time = burn_time;
   execution.maneuver.maneuver_id = command.maneuver_id;
   if (burn_time >= now) {
     execution.maneuver.accepted = 1;
-    const fsw::Vector3 dv_rtn =
-        with_errors(Eigen::Map<const fsw::Vector3>(command.dv_rtn), command.maneuver_id, execution.notes);
+    const fsw::Vector3 dv_rtn = settings_.errors.applied_to(Eigen::Map<const fsw::Vector3>(command.dv_rtn),
+                                                            command.maneuver_id, stream_, execution.notes);
     std::copy(dv_rtn.begin(), dv_rtn.end(), execution.maneuver.dv_rtn);
   }
   std::optional<Packet> packet = encoder_.encode(burn_time, execution.maneuver);

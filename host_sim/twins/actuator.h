@@ -2,11 +2,13 @@
 // Executes maneuver commands.
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "fsw/core/gps_time.h"
 #include "fsw/packets/messages.h"
 #include "host_sim/engine/random_stream.h"
+#include "host_sim/truth/forces/thrust_force.h"
 #include "host_sim/twins/packet_encoder.h"
 #include "host_sim/twins/packet_source.h"
 
@@ -19,6 +21,7 @@ struct Execution {
       maneuver{};  ///< accepted or not, and the impulse that happened, m/s in the servicer's RTN at `time`
   Packet packet;   ///< `maneuver` as sent to the flight software; empty: nothing is sent
   std::vector<Note> notes;
+  std::optional<truth::ThrustArc> arc;  ///< the burn that begins now, in place of an impulse; `maneuver` is its outcome
 };
 
 class Actuator {
@@ -28,9 +31,32 @@ class Actuator {
   Actuator& operator=(const Actuator&) = delete;
   virtual ~Actuator() = default;
 
-  /// Executes `command` at `burn_time`, the time tag of its packet. A burn before `now` is rejected: accepted is 0, the
-  /// impulse 0. The caller applies the impulse to the truth at Execution::time and delivers the packet.
+  /// Returns how long before the time tag of its command a burn begins: half its duration.
+  [[nodiscard]] virtual fsw::Duration lead(const vbar::maneuver_command& /*command*/) const { return {}; }
+
+  /// Executes `command`, whose packet has the time tag `burn_time`, from `now` on, a lead before. A burn that had to
+  /// begin before `now` is rejected: accepted is 0, the impulse 0. The caller applies impulse or arc to the truth and
+  /// delivers the packet when it has ended.
   virtual Execution execute(const vbar::maneuver_command& command, fsw::GpsTime burn_time, fsw::GpsTime now) = 0;
+
+  /// Executes an impulse that was not commanded, of a valve that does not close.
+  virtual Execution leak(const vbar::maneuver_command& impulse, fsw::GpsTime time) {
+    return execute(impulse, time, time);
+  }
+  /// Returns the report of a burn as if it had been executed in full.
+  [[nodiscard]] virtual Packet pretended_report(const vbar::maneuver_command& command, fsw::GpsTime burn_time) {
+    return execute(command, burn_time, burn_time).packet;
+  }
+};
+
+/// Errors of the burns of a thruster, drawn by the number of each, independently of other burns.
+struct BurnErrors {
+  double magnitude = 0.0;     ///< 1 sigma, relative
+  double pointing_rad = 0.0;  ///< 1 sigma, about each of two axes across the burn
+
+  /// Returns the burn as executed, m/s; without errors the commanded one, bit for bit. Notes: the errors.
+  [[nodiscard]] fsw::Vector3 applied_to(const fsw::Vector3& dv_rtn, std::int32_t maneuver_id,
+                                        const engine::RandomStream& stream, std::vector<Note>& notes) const;
 };
 
 // An impulsive thruster: ideal, or with errors of magnitude and pointing.
@@ -40,22 +66,15 @@ class IdealThruster final : public Actuator {
   struct Settings {
     std::uint8_t spacecraft_number = 0;
     std::uint8_t unit = 0;
-    double magnitude_error = 0.0;     ///< 1 sigma, relative
-    double pointing_error_rad = 0.0;  ///< 1 sigma, about each of two axes across the impulse
+    BurnErrors errors;
   };
 
-  /// Makes a thruster; `stream` is the thruster's own. The errors of a burn are drawn by its maneuver_id, independently
-  /// of other burns.
+  /// Makes a thruster; `stream` is the thruster's own.
   IdealThruster(const Settings& settings, const engine::RandomStream& stream);
 
-  /// Executes a burn. Without errors the executed impulse is the commanded one, bit for bit. Notes: the errors of the
-  /// burn.
   Execution execute(const vbar::maneuver_command& command, fsw::GpsTime burn_time, fsw::GpsTime now) override;
 
  private:
-  [[nodiscard]] fsw::Vector3 with_errors(const fsw::Vector3& dv_rtn, std::int32_t maneuver_id,
-                                         std::vector<Note>& notes) const;
-
   Settings settings_;
   engine::RandomStream stream_;
   PacketEncoder encoder_;

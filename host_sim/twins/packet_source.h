@@ -7,6 +7,7 @@
 #include <future>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "fsw/packets/packet.h"
 #include "host_sim/io/serial_line.h"
 #include "host_sim/truth/attitude/attitude_motion.h"
+#include "host_sim/truth/forces/thrust_force.h"
 
 namespace vbar::twins {
 
@@ -230,6 +232,10 @@ class TrueWorld {
   // The spacecraft that flies.
   /// Adds a velocity, m/s in its own RTN, at the current time.
   virtual void apply_impulse_rtn(const fsw::Vector3& dv_rtn) = 0;
+  /// Begins a burn with a duration at the current time. Throws std::runtime_error where burns can be impulses only.
+  virtual void begin_burn(const truth::ThrustArc& /*arc*/) {
+    throw std::runtime_error("the truth of this run knows impulses only: no thruster with thrust_n can act on it");
+  }
   /// Points it to a direction in its own RTN, a unit vector and its rate (1/s) at `time`, if its attitude is commanded.
   virtual void point(fsw::GpsTime time, const fsw::Vector3& boresight_rtn, const fsw::Vector3& boresight_rate_rtn) = 0;
 

@@ -373,6 +373,39 @@ elements = { kind = "mean", semi_major_axis_km = 7000, ex = 0, ey = 0, inclinati
   EXPECT_TRUE(small_mission().flies());
 }
 
+const std::string kThruster = "spacecraft.servicer.actuators.thruster=";
+
+TEST(FiniteThrusterKeys, AreRead) {
+  const Mission mission = small_mission(
+      {kThruster + "{thrust_n=0.02, specific_impulse_s=65, propellant_kg=0.5, minimum_impulse_mns=2, rise_s=0.1}"});
+  const auto& finite = mission.find_spacecraft("servicer")->thruster->finite;
+  ASSERT_TRUE(finite);
+  EXPECT_EQ(finite->thrust_n, 0.02);
+  EXPECT_DOUBLE_EQ(finite->exhaust_velocity_mps(), 65.0 * 9.80665);
+  EXPECT_DOUBLE_EQ(finite->minimum_impulse_ns, 2e-3);
+  EXPECT_EQ(finite->maximum_on_time_s, 300.0);
+  EXPECT_EQ(finite->fall_s, 0.0);
+  EXPECT_FALSE(small_mission({}).find_spacecraft("servicer")->thruster->finite);
+}
+
+TEST(FiniteThrusterKeys, BadOnesEndWithOneMessage) {
+  const auto with = [](const std::string& keys) {
+    return message_of(std::string(kSmallMission), {kThruster + "{" + keys + "}"});
+  };
+  EXPECT_THAT(with("thrust_n=0, specific_impulse_s=65, propellant_kg=1"),
+              testing::HasSubstr("thrust_n: found the integer 0"));
+  EXPECT_THAT(with("thrust_n=1, specific_impulse_s=-65, propellant_kg=1"),
+              testing::HasSubstr("specific_impulse_s: found"));
+  EXPECT_THAT(with("thrust_n=1, propellant_kg=1"), testing::HasSubstr("specific_impulse_s: found nothing"));
+  EXPECT_THAT(with("thrust_n=1, specific_impulse_s=65"), testing::HasSubstr("propellant_kg: found nothing"));
+  EXPECT_THAT(with("thrust_n=1, specific_impulse_s=65, propellant_kg=154"), testing::HasSubstr("less than mass_kg"));
+  EXPECT_THAT(with("minimum_impulse_mns=1"), testing::HasSubstr("it with thrust_n"));
+  EXPECT_THAT(with("thrust_n=1, specific_impulse_s=65, propellant_kg=1, max_thrust_n=2"),
+              testing::HasSubstr("thrust_n alone"));
+  EXPECT_THAT(with("thrust_n=0.001, specific_impulse_s=65, propellant_kg=1, minimum_impulse_mns=500"),
+              testing::HasSubstr("a time in which thrust_n gives minimum_impulse_mns"));
+}
+
 }  // namespace
 
 }  // namespace vbar::mission::test

@@ -229,7 +229,7 @@ vbar::maneuver_command command(std::int32_t id, const Vector3& dv_rtn) {
 }
 
 IdealThruster thruster(double magnitude_error, double pointing_error_rad, std::uint64_t seed = 1) {
-  return {{1, 2, magnitude_error, pointing_error_rad}, engine::RandomStream(seed, "servicer/thruster")};
+  return {{1, 2, {magnitude_error, pointing_error_rad}}, engine::RandomStream(seed, "servicer/thruster")};
 }
 
 Vector3 executed(const Execution& execution) {
