@@ -21,6 +21,7 @@
 #include "host_sim/cli/build_info.h"
 #include "host_sim/cli/command_line.h"
 #include "host_sim/cli/commands.h"
+#include "host_sim/cli/fit_command.h"
 #include "host_sim/cli/stars_command.h"
 #include "host_sim/files/error_lines.h"
 #include "host_sim/files/own_program.h"
@@ -129,7 +130,7 @@ int after_output(const CLI::App& program, int result) {
   const std::vector<CLI::App*> commands = program.get_subcommands();
   const auto leaves_folder = [](const CLI::App* command) {
     const std::string name = command->get_name();
-    return name == "run" || name == "resume" || name == "propagate" || name == "verify" ||
+    return name == "run" || name == "resume" || name == "propagate" || name == "fit" || name == "verify" ||
            (name == "campaign" && command->got_subcommand("run"));
   };
   if (!std::ranges::any_of(commands, leaves_folder))
@@ -219,6 +220,8 @@ int execute(int argc, char** argv) {
   propagate_app->add_flag("--quiet", propagate.quiet, kQuietHelp);
   add_set(propagate_app, propagate.overrides);
   propagate_app->callback([&] { exit_code = propagate_command(propagate); });
+
+  add_fit_command(program, exit_code);
 
   ReplayOptions replay;
   CLI::App* replay_app =

@@ -92,6 +92,19 @@ FramedState state_at(const OrbitFile& file, fsw::GpsTime time) {
                                       text_of(last.states.back().time)));
 }
 
+fsw::orbit::CartesianState gcrf_state(Frame frame, const fsw::orbit::CartesianState& state,
+                                      truth::EarthRotation& rotation, double seconds) {
+  if (frame == Frame::kGcrf) return state;
+  constexpr double kHalf_s = 0.1;
+  const fsw::Matrix3 R = rotation.R_itrf_gcrf_at(seconds);
+  const fsw::Matrix3 rate =
+      (rotation.R_itrf_gcrf_at(seconds + kHalf_s) - rotation.R_itrf_gcrf_at(seconds - kHalf_s)) / (2.0 * kHalf_s);
+  fsw::orbit::CartesianState gcrf;
+  gcrf.position_eci = R.transpose() * state.position_eci;
+  gcrf.velocity_eci = R.transpose() * state.velocity_eci + rate.transpose() * state.position_eci;
+  return gcrf;
+}
+
 namespace {
 
 using fsw::Vector3;

@@ -11,6 +11,7 @@
 
 #include "fsw/core/gps_time.h"
 #include "fsw/orbit/elements.h"
+#include "host_sim/truth/earth/earth_rotation.h"
 
 namespace vbar::orbit_files {
 
@@ -111,6 +112,11 @@ struct FramedState {
 /// Throws std::out_of_range that names file, time and reason: outside the states or the useable time, in a gap, or an
 /// error that may exceed kMaxInterpolationErrorM.
 [[nodiscard]] FramedState state_at(const OrbitFile& file, fsw::GpsTime time);
+
+/// Returns a state of `frame` in GCRF, `seconds` after the epoch of the rotation, whose rate is a central difference:
+/// over 0.1 s it is good to 1e-8 m/s in a low orbit.
+[[nodiscard]] fsw::orbit::CartesianState gcrf_state(Frame frame, const fsw::orbit::CartesianState& state,
+                                                    truth::EarthRotation& rotation, double seconds);
 
 // Interpolation between the states of a track, checked against these states by leaving each of them out.
 //

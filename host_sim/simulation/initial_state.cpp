@@ -47,19 +47,6 @@ CartesianState state_at_epoch(const mission::OrbitByElements& orbit, const missi
   return value_or_throw(fsw::orbit::cartesian_from_qns(orbit.elements), spacecraft);
 }
 
-/// Converts to GCRF from the Earth-fixed frame. The rate of the rotation is a central difference: over 0.1 s it is good
-/// to 1e-8 m/s in a low orbit.
-CartesianState gcrf_from_itrf(const CartesianState& itrf, const truth::TruthModel& truth, fsw::GpsTime time) {
-  constexpr double kHalf_s = 0.1;
-  truth::EarthRotation rotation(truth.data().earth_orientation, time);
-  const fsw::Matrix3 R = rotation.R_itrf_gcrf_at(0.0);
-  const fsw::Matrix3 rate = (rotation.R_itrf_gcrf_at(kHalf_s) - rotation.R_itrf_gcrf_at(-kHalf_s)) / (2.0 * kHalf_s);
-  CartesianState state;
-  state.position_eci = R.transpose() * itrf.position_eci;
-  state.velocity_eci = R.transpose() * itrf.velocity_eci + rate.transpose() * itrf.position_eci;
-  return state;
-}
-
 std::string note_of(const orbit_files::InterpolationCheck& check, const std::string& file,
                     const std::string& spacecraft) {
   const std::string velocity = check.bound_mps ? fmt::format(" and {:.1e} m/s", *check.bound_mps) : "";
@@ -75,7 +62,8 @@ CartesianState state_at_epoch(const mission::OrbitByFile& orbit, const mission::
   const auto file = orbit_files::tracks_of(orbit_files::load_orbits(data_directory / orbit.file), orbit.object);
   const orbit_files::FramedState at = orbit_files::state_at(file, truth.time());
   if (at.interpolation) truth.add_data_note(note_of(*at.interpolation, orbit.file.filename(), spacecraft.name));
-  return at.frame == orbit_files::Frame::kItrf ? gcrf_from_itrf(at.state, truth, truth.time()) : at.state;
+  truth::EarthRotation rotation(truth.data().earth_orientation, truth.time());
+  return orbit_files::gcrf_state(at.frame, at.state, rotation, 0.0);
 }
 
 /// Mean ROE of `spacecraft` with respect to another one; none if its orbit is given by elements.
