@@ -11,9 +11,6 @@ namespace {
 constexpr std::size_t kMaxSatellites = gnss::kMaxObservations;
 constexpr int kMaxIterations = 12;
 
-// Residual errors of broadcast orbits and clocks and, with one frequency, of the ionosphere above the receiver.
-constexpr double kBroadcastSigma_m = 1.5;
-constexpr double kIonosphereSigma_m = 4.0;
 // Upper bound of the ionospheric difference between two frequencies.
 constexpr double kMaxDispersion_m = 200.0;
 // A residual beyond this number of sigma is an outlier.
@@ -38,7 +35,8 @@ struct Ranges {
 };
 
 /// One range per satellite: ionosphere-free for GPS if L2 is available.
-Ranges ranges_of(const gnss::ObservationEpoch& epoch, const EphemerisStore& ephemerides, const EarthFrame& frame) {
+Ranges ranges_of(const gnss::ObservationEpoch& epoch, const EphemerisStore& ephemerides, const EarthFrame& frame,
+                 const RangeErrors& errors) {
   constexpr double kGamma = (gnss::kL1_Hz / gnss::kL2_Hz) * (gnss::kL1_Hz / gnss::kL2_Hz);
   Ranges ranges;
   for (std::size_t k = 0; k < epoch.count; ++k) {
@@ -50,7 +48,7 @@ Ranges ranges_of(const gnss::ObservationEpoch& epoch, const EphemerisStore& ephe
     range.system = static_cast<std::size_t>(first.satellite.constellation);
     double pseudorange = first.pseudorange_m;
     double noise = first.pseudorange_sigma_m;
-    double unmodelled = kIonosphereSigma_m;
+    double unmodelled = errors.ionosphere_sigma_m;
     if (first.signal == gnss::Signal::kGpsL1 && k + 1 < epoch.count &&
         epoch.observations[k + 1].satellite == first.satellite) {
       const gnss::Observation& second = epoch.observations[k + 1];
@@ -60,7 +58,8 @@ Ranges ranges_of(const gnss::ObservationEpoch& epoch, const EphemerisStore& ephe
       unmodelled = 0.0;
     }
     range.corrected_m = pseudorange + range.source.clock_m;
-    range.sigma_m = math::sqrt(noise * noise + unmodelled * unmodelled + kBroadcastSigma_m * kBroadcastSigma_m);
+    range.sigma_m =
+        math::sqrt(noise * noise + unmodelled * unmodelled + errors.broadcast_sigma_m * errors.broadcast_sigma_m);
     if (math::is_finite(range.corrected_m + range.sigma_m)) ranges.of[ranges.count++] = range;
   }
   return ranges;
@@ -74,9 +73,17 @@ double residual_of(const Range& range, const Unknowns& x) {
   return range.corrected_m - (range.source.position_eci - x.head<3>()).norm() - x(3) - offset;
 }
 
+Vector6 row_of(const Range& range, const Unknowns& x) {
+  Vector6 row = Vector6::Zero();
+  row.head<3>() = (x.head<3>() - range.source.position_eci).normalized();
+  row(3) = 1.0;
+  if (range.system > 0) row(3 + static_cast<int>(range.system)) = 1.0;
+  return row;
+}
+
 struct Fit {
   Unknowns x = Unknowns::Zero();
-  Matrix3 covariance = Matrix3::Zero();  ///< covariance of the position
+  Matrix6 covariance = Matrix6::Zero();
   Status status = Status::kDidNotConverge;
 };
 
@@ -91,10 +98,7 @@ Fit fit(const Ranges& ranges, Unknowns x) {
     for (std::size_t k = 0; k < ranges.count; ++k) {
       const Range& range = ranges.of[k];
       if (!range.used) continue;
-      Vector6 row = Vector6::Zero();
-      row.head<3>() = (x.head<3>() - range.source.position_eci).normalized();
-      row(3) = 1.0;
-      if (range.system > 0) row(3 + static_cast<int>(range.system)) = 1.0;
+      const Vector6 row = row_of(range, x);
       const double weight = 1.0 / (range.sigma_m * range.sigma_m);
       normal += (weight * row).lazyProduct(row.transpose());
       right += weight * residual_of(range, x) * row;
@@ -110,9 +114,7 @@ Fit fit(const Ranges& ranges, Unknowns x) {
     if (step.head<4>().norm() < 1e-4) {
       result.status = Status::kOk;
       result.x = x;
-      for (int axis = 0; axis < 3; ++axis) {
-        result.covariance.col(axis) = factor.solve(Vector6::Unit(axis)).head<3>();
-      }
+      for (int k = 0; k < 6; ++k) result.covariance.col(k) = factor.solve(Vector6::Unit(k));
       return result;
     }
   }
@@ -135,17 +137,24 @@ std::size_t unknown_count(const Ranges& ranges) {
   return count;
 }
 
-/// Removes the range with the worst residual; false if all of them fit.
-bool drop_worst(Ranges& ranges, const Unknowns& x) {
-  double worst = kWorstResidual;
+/// Removes the range with the worst residual; false if all of them fit. An outlier moves the solution, so that its own
+/// residual decreases and those of others increase: each is compared with the standard deviation that the fit leaves it
+/// (Baarda 1968: w-test).
+bool drop_worst(Ranges& ranges, const Fit& fitted) {
+  // Below it a range alone determines an unknown, and its residual says nothing.
+  constexpr double kMinRedundancy = 1e-3;
+  double worst = kWorstResidual * kWorstResidual;
   std::size_t place = ranges.count;
   for (std::size_t k = 0; k < ranges.count; ++k) {
-    if (!ranges.of[k].used) continue;
-    const double normalised = math::abs(residual_of(ranges.of[k], x)) / ranges.of[k].sigma_m;
-    if (normalised > worst) {
-      worst = normalised;
-      place = k;
-    }
+    const Range& range = ranges.of[k];
+    if (!range.used) continue;
+    const double variance = range.sigma_m * range.sigma_m;
+    const Vector6 row = row_of(range, fitted.x);
+    const double redundancy = 1.0 - row.dot(fitted.covariance * row) / variance;
+    const double residual = residual_of(range, fitted.x);
+    if (!(redundancy > kMinRedundancy) || !(residual * residual > worst * redundancy * variance)) continue;
+    worst = residual * residual / (redundancy * variance);
+    place = k;
   }
   if (place == ranges.count) return false;
   ranges.of[place].used = false;
@@ -155,8 +164,8 @@ bool drop_worst(Ranges& ranges, const Unknowns& x) {
 }  // namespace
 
 Result<SinglePoint> single_point(const gnss::ObservationEpoch& epoch, const EphemerisStore& ephemerides,
-                                 const EarthFrame& frame) {
-  Ranges ranges = ranges_of(epoch, ephemerides, frame);
+                                 const EarthFrame& frame, const RangeErrors& errors) {
+  Ranges ranges = ranges_of(epoch, ephemerides, frame, errors);
   const std::size_t max_dropped = ranges.count / 4;
   Unknowns x = Unknowns::Zero();
   // The first iteration starts at the Earth's centre; a metre along any axis keeps directions defined.
@@ -166,13 +175,14 @@ Result<SinglePoint> single_point(const gnss::ObservationEpoch& epoch, const Ephe
     const Fit fitted = fit(ranges, x);
     if (fitted.status != Status::kOk) return fitted.status;
     x = fitted.x;
-    if (drop_worst(ranges, x)) continue;
+    if (drop_worst(ranges, fitted)) continue;
     const double radius = x.head<3>().norm();
     if (radius < kMinRadius || radius > kGreatestRadius) return Status::kDidNotConverge;
+    const Matrix3 covariance_m2 = fitted.covariance.topLeftCorner<3, 3>();
     return SinglePoint{.position_eci = x.head<3>(),
                        .clock_m = x(3),
-                       .sigma_m = math::sqrt(fitted.covariance.trace() / 3.0),
-                       .covariance_m2 = fitted.covariance,
+                       .sigma_m = math::sqrt(covariance_m2.trace() / 3.0),
+                       .covariance_m2 = covariance_m2,
                        .used = used_count(ranges)};
   }
   return Status::kDidNotConverge;

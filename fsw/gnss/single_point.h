@@ -10,6 +10,12 @@
 
 namespace vbar::fsw::gnss {
 
+/// Errors of ranges beside the noise that the receiver states, 1 sigma.
+struct RangeErrors {
+  double broadcast_sigma_m = 1.5;   ///< orbits and clocks as broadcast
+  double ionosphere_sigma_m = 4.0;  ///< above the receiver, with one frequency
+};
+
 struct SinglePoint {
   Vector3 position_eci = Vector3::Zero();  ///< of the antenna at reception
   double clock_m = 0.0;                    ///< c times the receiver clock's advance over GPS time
@@ -27,6 +33,6 @@ struct SinglePoint {
 /// kNotReady: too few satellites with an ephemeris; kSingular: geometry; kDidNotConverge: residuals that do not fit, or
 /// a position outside low orbits.
 Result<SinglePoint> single_point(const gnss::ObservationEpoch& epoch, const EphemerisStore& ephemerides,
-                                 const EarthFrame& frame);
+                                 const EarthFrame& frame, const RangeErrors& errors = {});
 
 }  // namespace vbar::fsw::gnss

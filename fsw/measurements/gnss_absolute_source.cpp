@@ -13,7 +13,7 @@ Result<gnss::SinglePoint> GnssAbsoluteAiding::process(const gnss::ObservationEpo
   if (tag != filter.epoch()) return Status::kNotReady;
   if (!aid_.is_on()) aid_.go_to(AidState::kWaiting, tag);
   watch(tag);
-  const Result<gnss::SinglePoint> point = gnss::single_point(epoch, ephemerides, frame);
+  const Result<gnss::SinglePoint> point = gnss::single_point(epoch, ephemerides, frame, range_errors_);
   if (!point.ok()) {
     ++counters_.no_solution;
     return point;

@@ -25,6 +25,9 @@ class GnssAbsoluteAiding {
   /// Nominal phase centre from the centre of mass, m, body axes.
   void set_antenna(const Vector3& antenna_body_m) { antenna_body_m_ = antenna_body_m; }
 
+  /// Errors of ranges; by default those of broadcast ephemerides.
+  void set_range_errors(const gnss::RangeErrors& errors) { range_errors_ = errors; }
+
   /// Processes an epoch at whose tag the filter stands, and returns its single-point solution (status: that of
   /// single_point(), or kNotReady for another time). The position is referred to the centre of mass; without an
   /// attitude its covariance includes the lever arm.
@@ -44,6 +47,7 @@ class GnssAbsoluteAiding {
  private:
   Aid aid_;
   Vector3 antenna_body_m_ = Vector3::Zero();
+  gnss::RangeErrors range_errors_;
   GpsTime last_accepted_;
   OwnGnssCounters counters_;
 };

@@ -93,8 +93,9 @@ void check_sensors(const TableReader& sensors, const Spacecraft& spacecraft, con
 }
 
 void read_source(const TableReader& section, std::string_view twin, const SensorContext& context,
-                 SensorSettings& settings) {
+                 SensorSettings& settings, std::string_view another) {
   std::vector<std::string_view> accepted{twin, kRecorded};
+  if (!another.empty()) accepted.push_back(another);
   for (const Testbed& testbed : context.mission.testbeds) accepted.push_back(testbed.name);
   settings.source = section.choice("source", accepted, twin);
   const std::string log = section.text("log", "");

@@ -62,9 +62,9 @@ struct Installation {
                                                                  const Installation& installation);
 
 /// Reads `source` and, for "recorded", `log`: `twin` is the name of the source that this program simulates, the
-/// default. Testbeds of the mission are accepted too.
+/// default. Testbeds of the mission are accepted too, and `another` source of the kind, unless it is empty.
 void read_source(const TableReader& section, std::string_view twin, const SensorContext& context,
-                 SensorSettings& settings);
+                 SensorSettings& settings, std::string_view another = {});
 
 // A period as missions state it: a number of seconds, or a list of [hour of the mission, seconds].
 

@@ -20,6 +20,7 @@ enum class Frame { kGcrf, kItrf };
 struct TimedState {
   fsw::GpsTime time;
   fsw::orbit::CartesianState state;  ///< in the frame of the track; relative to that frame if it is Earth-fixed
+  std::optional<double> clock_s{};   ///< of the object ahead of GPS time, without relativity, where the file has one
 };
 
 enum class Polynomial {
@@ -75,7 +76,7 @@ struct OrbitFormat {
 [[nodiscard]] std::vector<Track> read_opm(std::string_view text, const std::string& file);
 
 // SP3-a to SP3-d (Hilla 2016), Earth-fixed, with or without velocities. Positions and velocities of 0 are missing ones;
-// the positions alone are used of a satellite that lacks a velocity.
+// the positions alone are used of a satellite that lacks a velocity. Clocks of 999999 are missing ones.
 [[nodiscard]] bool is_sp3(std::string_view text);
 [[nodiscard]] std::vector<Track> read_sp3(std::string_view text, const std::string& file);
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -101,7 +102,15 @@ class Sp3Reader {
     const double radius = state.state.position_eci.norm();
     if (!(radius > kSmallestRadius && radius < kLargestRadius))
       lines_.refuse(fmt::format("a position {:.6g} km from the Earth's centre", 1e-3 * radius), "6400 to 1e6 km");
+    state.clock_s = clock_s();
     one.states.push_back(state);
+  }
+
+  /// Microseconds in columns 47 to 60, which a line may lack.
+  std::optional<double> clock_s() const {
+    constexpr double kMissing_us = 999'999.0;
+    const auto clock_us = lines_.number_or_blank_in(47, 60, "the clock");
+    return clock_us && std::abs(*clock_us) < kMissing_us ? std::optional(1e-6 * *clock_us) : std::nullopt;
   }
 
   void take_velocity() {

@@ -8,7 +8,7 @@ set(package lib/cmake/vbar)
 set(board lib/vbar/zynq7000)
 
 if(VBAR_TARGET STREQUAL "host")
-  foreach(program vbar vbar_hil vbar_flight vbar_grand_bench vbar_os_bench vbar_os_calibrate vbar_tron vbar_tron_bench)
+  foreach(program vbar vbar_hil vbar_flight vbar_fit_ephemerides vbar_flown_receiver vbar_grand_bench vbar_os_bench vbar_os_calibrate vbar_tron vbar_tron_bench)
     if(TARGET ${program})  # or a library that it needs is not there
       install(TARGETS ${program} RUNTIME)
     endif()

@@ -1,6 +1,7 @@
 #include "host_sim/sensors/gnss/gnss_kind.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -95,13 +96,42 @@ void read_line(const TableReader& section, double period_s, testbeds::ReceiverLi
   read(section, "max_latency_s", above_to(0.0, 60.0), line.max_latency_s);
 }
 
+constexpr Names<bool, 2> kStrengths{{{"dbhz", false}, {"amplitude", true}}};
+
+/// Three observation types: code, carrier phase, signal strength.
+void read_types(const TableReader& section, std::string_view key, std::optional<twins::gnss::SignalTypes>& types) {
+  const std::vector<std::string> names = section.texts(key);
+  if (names.empty()) return;
+  if (names.size() != 3) section.refuse_value(key, "three types: code, carrier phase, signal strength");
+  types = twins::gnss::SignalTypes{names[0], names[1], names[2]};
+}
+
+/// Files of a receiver of source "rinex".
+void read_recording(const TableReader& section, bool is_used, const mission::Mission& mission,
+                    twins::gnss::RecordingSettings& recording) {
+  constexpr std::array<std::string_view, 1> kNone{""};
+  recording.observations = mission::data_file(section, "observations", "", mission, kNone);
+  recording.navigation = mission::data_file(section, "navigation", "", mission, kNone);
+  read_types(section, "l1", recording.l1);
+  read_types(section, "l2", recording.l2);
+  recording.uses_l2 = !section.flag("single_frequency", false);
+  recording.corrects_code = section.flag("corrects_code", false);
+  recording.strength_is_amplitude = section.choice<bool>("strength", kStrengths, false);
+  if (recording.corrects_code && recording.uses_l2)
+    section.refuse_value("corrects_code", "false, unless single_frequency is true: two frequencies need no correction");
+  if (is_used && (recording.observations.empty() || recording.navigation.empty()))
+    section.refuse(recording.observations.empty() ? "observations" : "navigation", "nothing",
+                   "a RINEX file, as source is rinex");
+  section.finish();
+}
+
 }  // namespace
 
 std::shared_ptr<const mission::SensorSettings> read_gnss(const TableReader& section,
                                                          const mission::SensorContext& context) {
   auto sensor = std::make_shared<GnssSensor>();
   const std::vector<std::string>& names = context.spacecraft_names;
-  mission::read_source(section, "digital", context, *sensor);
+  mission::read_source(section, "digital", context, *sensor, kRinex);
   using Use = vbar::navigation_configuration;
   sensor->observed = section.text("partner", "");
   sensor->navigation = Use::kUseOwnGnss + (sensor->observed.empty() ? 0 : std::int32_t{Use::kUseCarrierPair});
@@ -122,6 +152,9 @@ std::shared_ptr<const mission::SensorSettings> read_gnss(const TableReader& sect
   read_start(section.table("start"), receiver.start);
   read_receiver_clock(section.table("clock"), receiver.clock);
   read_body_frame(section.table("body_frame"), receiver.body_frame);
+  read_recording(section.table("recording"), sensor->source == kRinex, context.mission, sensor->recording);
+  sensor->recording.tracking = receiver.tracking;
+  sensor->recording.ephemeris_period_s = receiver.output.ephemeris_period_s;
   section.finish();
   try {
     twins::gnss::check(receiver);  // what depends on more than one key
@@ -229,6 +262,13 @@ std::unique_ptr<twins::gnss::ReceiverBytes> make_twin(const MakeContext& context
                                                      context.data_directory, mission.seed, carrier.name);
 }
 
+std::unique_ptr<twins::gnss::ReceiverBytes> make_recorded(const MakeContext& context, const Spacecraft& carrier) {
+  auto receiver = std::make_unique<twins::gnss::RecordedReceiver>(find_settings<GnssSensor>(carrier)->recording,
+                                                                  context.data_directory);
+  context.data_notes.insert(context.data_notes.end(), receiver->notes().begin(), receiver->notes().end());
+  return receiver;
+}
+
 std::unique_ptr<twins::gnss::ReceiverBytes> make_of_testbed(const testbeds::TestbedKind& testbed,
                                                             const MakeContext& context, const Spacecraft& carrier) {
   if (context.outlook == nullptr) throw std::logic_error("a testbed requires the truth of the run");
@@ -247,7 +287,9 @@ std::unique_ptr<twins::PacketSource> make_receiver(const MakeContext& context, c
   sensor.spacecraft = carrier.name;
   sensor.flight_number = context.servicer.number;
   sensor.start = mission.start_time();
-  auto receiver = testbed != nullptr ? make_of_testbed(*testbed, context, carrier) : make_twin(context, carrier);
+  auto receiver = testbed != nullptr ? make_of_testbed(*testbed, context, carrier)
+                  : source == kRinex ? make_recorded(context, carrier)
+                                     : make_twin(context, carrier);
   sensor.period = receiver->call_period().value_or(
       fsw::nearest_duration(find_settings<GnssSensor>(carrier)->receiver.output.period_s));
   if (&carrier != &context.servicer) {
@@ -284,8 +326,11 @@ void add_sources(const Sensor& sensor, const MakeContext& context, std::vector<t
   const std::string& source = sensor.settings->source;
   const auto add = [&](const Spacecraft& carrier) {
     auto packets = packets_of_testbed(sensor, kGnss, context, carrier, messages_of(carrier, context.servicer), 0);
-    if (!packets) packets = make_receiver(context, source, carrier);
-    sources.push_back({source_name(carrier, sensor), source, std::move(packets)});
+    // A recorded receiver may have a partner that is simulated, and the reverse.
+    const std::string& carried = find_settings<GnssSensor>(carrier)->source;
+    const std::string& own = source == kRinex || carried == kRinex ? carried : source;
+    if (!packets) packets = make_receiver(context, own, carrier);
+    sources.push_back({source_name(carrier, sensor), own, std::move(packets)});
   };
   add(context.servicer);
   if (const Spacecraft* const partner = context.mission.find_spacecraft(sensor.settings->observed)) add(*partner);

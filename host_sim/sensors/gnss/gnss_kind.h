@@ -10,6 +10,7 @@
 #include "host_sim/twins/gnss/constellation.h"
 #include "host_sim/twins/gnss/crosslink.h"
 #include "host_sim/twins/gnss/gnss_settings.h"
+#include "host_sim/twins/gnss/recorded_receiver.h"
 
 namespace vbar::sensors {
 
@@ -17,8 +18,12 @@ namespace vbar::sensors {
 /// empty: this one's go to its partner, or they are all there is, beside a camera of a target that does not cooperate.
 struct GnssSensor : mission::SensorSettings {
   twins::gnss::GnssReceiverSettings receiver;
-  testbeds::ReceiverLine line;  ///< line of a receiver in a testbed
+  testbeds::ReceiverLine line;               ///< line of a receiver in a testbed
+  twins::gnss::RecordingSettings recording;  ///< files of a recorded receiver, of source "rinex"
 };
+
+/// Source of a recorded receiver in the place of the twin.
+inline constexpr std::string_view kRinex = "rinex";
 
 /// [navigation.carrier_phase], [constellation] and [links.crosslink].
 struct GnssShared : mission::SharedSettings {

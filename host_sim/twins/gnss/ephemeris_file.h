@@ -44,6 +44,9 @@ struct EphemerisFormat {
 [[nodiscard]] bool is_rinex(std::string_view text);
 [[nodiscard]] EphemerisFile read_rinex(std::string_view text, const std::string& file, const SystemSet& used);
 
+/// Reads all sets of a RINEX navigation file, in the order of the file.
+[[nodiscard]] EphemerisFile read_rinex_sets(std::string_view text, const std::string& file, const SystemSet& used);
+
 [[nodiscard]] std::span<const EphemerisFormat> ephemeris_formats();
 
 /// Reads the satellites of a text in any of the formats. Throws std::runtime_error; for an unknown format it names all.

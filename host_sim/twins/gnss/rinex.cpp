@@ -452,24 +452,28 @@ bool is_rinex(std::string_view text) {
   return lines.next() && files::trimmed(lines.columns(61, 80)) == "RINEX VERSION / TYPE";
 }
 
-EphemerisFile read_rinex(std::string_view text, const std::string& file, const SystemSet& used) {
+EphemerisFile read_rinex_sets(std::string_view text, const std::string& file, const SystemSet& used) {
   files::TextLines lines(text, file);
   const RinexHeader header = read_rinex_header(lines);
   EphemerisFile result;
   result.corrections = header.corrections;
   RinexRecords records(lines, header.version, used);
-  std::vector<Ephemeris> sets;
-  while (const auto record = records.next(result.corrections)) sets.push_back(ephemeris_of(*record));
+  while (const auto record = records.next(result.corrections)) result.satellites.push_back(ephemeris_of(*record));
   const std::string left_out = records.left_out().text();
   // A run may take its systems from several files.
-  if (sets.empty() && !records.has_unused_systems())
+  if (result.satellites.empty() && !records.has_unused_systems())
     lines.refuse(left_out.empty() ? "no record of a satellite" : fmt::format("nothing but {}", left_out),
                  "at least one set of GPS LNAV, Galileo I/NAV or BeiDou D1 or D2");
-  if (!sets.empty()) result.satellites = nearest_to(noon_of(sets), sets);
   if (!left_out.empty()) result.note = fmt::format("{}: not used are {}.", file, left_out);
   if (const int resolved = records.sets_with_resolved_week(); resolved > 0)
     result.note += fmt::format("{}{}: sets whose week is counted modulo 1024 and resolved by their date: {}.",
                                result.note.empty() ? "" : " ", file, resolved);
+  return result;
+}
+
+EphemerisFile read_rinex(std::string_view text, const std::string& file, const SystemSet& used) {
+  EphemerisFile result = read_rinex_sets(text, file, used);
+  if (!result.satellites.empty()) result.satellites = nearest_to(noon_of(result.satellites), result.satellites);
   return result;
 }
 

@@ -93,6 +93,34 @@ TEST(SinglePoint, LeavesOutAFaultySatellite) {
   EXPECT_LT((point.value().position_eci - receiver.antenna()).norm(), 10.0);
 }
 
+/// A fault of 30 m moves the solution by metres, and residuals of others can become larger than that of the faulty
+/// satellite. The reference is the solution of an epoch that lacks it.
+TEST(SinglePoint, LeavesOutTheSatelliteOfASmallFault) {
+  OneReceiver receiver;
+  const gnss::ObservationEpoch observed = receiver.epoch();
+  std::size_t faults = 0;
+  for (std::size_t k = 0; k < observed.count; ++k) {
+    if (observed.observations[k].signal != gnss::Signal::kGpsL1) continue;
+    const gnss::SatelliteId faulty = observed.observations[k].satellite;
+    gnss::ObservationEpoch epoch = observed, without;
+    without.receiver_time = observed.receiver_time;
+    for (std::size_t n = 0; n < observed.count; ++n) {
+      if (observed.observations[n].satellite != faulty) {
+        without.observations[without.count++] = observed.observations[n];
+      } else {
+        epoch.observations[n].pseudorange_m += 30.0;
+      }
+    }
+    const auto expected = receiver.solve(without), point = receiver.solve(epoch);
+    ASSERT_TRUE(expected.ok() && point.ok());
+    EXPECT_EQ(point.value().used, expected.value().used) << k;
+    // Both iterations end within 0.1 mm.
+    EXPECT_LT((point.value().position_eci - expected.value().position_eci).norm(), 1e-3) << k;
+    ++faults;
+  }
+  EXPECT_GE(faults, 6U);
+}
+
 TEST(SinglePoint, TooFewSatellitesAreNoSolution) {
   OneReceiver receiver;
   for (const std::size_t satellites : {0U, 1U, 3U, 4U}) {

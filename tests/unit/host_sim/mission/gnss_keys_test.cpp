@@ -212,7 +212,7 @@ TEST(BadGnssValue, EndsWithOneMessageThatNamesItsRange) {
 TEST(BadGnssValue, WordsThatAreNone) {
   const std::string sensor(kSensor);
   const BadValue words[] = {
-      {sensor + ".source", "testbed", "the text \"testbed\"", "digital or recorded"},
+      {sensor + ".source", "testbed", "the text \"testbed\"", "digital, recorded or rinex"},
       {sensor + ".gps_ephemeris", "rawephemb", "the text \"rawephemb\" (did you mean rawephem?)",
        "rawephem or gpsephem"},
       {sensor + ".start.mode", "lukewarm", "the text \"lukewarm\"", "cold, warm or hot"},
