@@ -140,7 +140,9 @@ TEST(FiniteBurns, ApproachAnImpulseAsThrustGrows) {
     finite.advance_to(kEnd);
     const double difference = (finite.state().position_eci - impulsive.state().position_eci).norm();
     RecordProperty("difference_m_at_" + std::to_string(thrust_n) + "_N", std::to_string(difference));
-    if (last > 0.0) EXPECT_LT(difference, 0.11 * last) << thrust_n;
+    if (last > 0.0) {
+      EXPECT_LT(difference, 0.11 * last) << thrust_n;
+    }
     last = difference;
   }
   EXPECT_LT(last, 0.01);

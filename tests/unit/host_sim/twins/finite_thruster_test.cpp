@@ -15,16 +15,17 @@ using fsw::Vector3;
 const fsw::GpsTime kBurn = fsw::GpsTime{} + fsw::duration_of_seconds(1'000'000'000);
 
 FiniteThruster::Settings settings() {
-  return {.spacecraft_number = 1,
-          .thruster = {.thrust_n = 0.02,
-                       .specific_impulse_s = 65.0,
-                       .propellant_kg = 1.0,
-                       .minimum_impulse_ns = 1e-3,
-                       .maximum_on_time_s = 400.0,
-                       .rise_s = 0.1,
-                       .fall_s = 0.3},
-          .mass_kg = 30.0,
-          .nominal_mass_kg = 30.0};
+  FiniteThruster::Settings of;
+  of.spacecraft_number = 1;
+  of.thruster = {.thrust_n = 0.02,
+                 .specific_impulse_s = 65.0,
+                 .propellant_kg = 1.0,
+                 .minimum_impulse_ns = 1e-3,
+                 .maximum_on_time_s = 400.0,
+                 .rise_s = 0.1,
+                 .fall_s = 0.3};
+  of.mass_kg = of.nominal_mass_kg = 30.0;
+  return of;
 }
 
 FiniteThruster thruster(const FiniteThruster::Settings& of = settings()) {
