@@ -124,10 +124,11 @@ void read_camera_settings(const TableReader& section, CameraFile& camera) {
   CameraSettings& single = camera.single;
   read(section, "exposure_s", from_to(1e-5, 60.0), single.exposure_s);
   read(section, "zero_magnitude_photons", above_to(0.0, 1e15), single.zero_magnitude_photons);
-  read_optics(section.table("optics"), single.optics);
+  const TableReader optics = section.table("optics");
+  read_optics(optics, single.optics);
   const TableReader detector = section.table("detector");
   read_detector(detector, single.detector);
-  read_field_of_view(section.table("optics"), single);
+  read_field_of_view(optics, single);
   read_binning_and_gain(detector, camera);
   const double brightest_dn = (1 << single.detector.bits) - 1;
   if (!(single.detector.offset_dn < 0.5 * brightest_dn))
