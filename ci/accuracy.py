@@ -25,7 +25,7 @@ LITERALS = re.compile(r'((?:"(?:[^"\\]|\\.)*"\s*)+)\s*([,)+])')
 
 # Effects that the truth model omits.
 LEFT_OUT = [
-    ["ocean tides", "about 3e-8 m/s^2 in a low orbit, a tenth of the solid Earth tides; they require a tide model of some hundred coefficients",
+    ["ocean tides, but in `vbar fit`", "about 3e-8 m/s^2 in a low orbit, a tenth of the solid Earth tides; they require a tide model of some hundred coefficients",
      "IERS Conventions 2010, section 6.3"],
     ["Earth albedo and infrared radiation", "10 to 35 % of the direct radiation pressure in a low orbit",
      "Montenbruck and Gill 2000, section 3.7"],

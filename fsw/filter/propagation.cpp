@@ -1,5 +1,7 @@
 #include "fsw/filter/propagation.h"
 
+#include <Eigen/Geometry>
+
 #include "fsw/math/math.h"
 #include "fsw/orbit/constants.h"
 #include "fsw/orbit/gravity_field.h"

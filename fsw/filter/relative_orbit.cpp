@@ -85,8 +85,8 @@ bool RelativeOrbit::advance(const Estimate& estimate, const OrbitStep& step, Hea
         .drag = x(kDrag), .from_sun = x(kFromSun), .empirical_rtn = x.segment<3>(kEmpirical)};
     const auto deputy = orbit::qns_from_cartesian(step.propagation.coast(target.value(), step.dt, differential));
     if (!deputy.ok()) return false;
-    moved[k] << orbit::roe_from_qns(after.value(), deputy.value()), drag_decay * x(kDrag),
-        from_sun_decay * x(kFromSun), empirical_decay * x.segment<3>(kEmpirical);
+    moved[k] << orbit::roe_from_qns(after.value(), deputy.value()), drag_decay * x(kDrag), from_sun_decay * x(kFromSun),
+        empirical_decay * x.segment<3>(kEmpirical);
   }
   const auto regression = transform.regress<kOrbitSize>(moved);
   motion.mean.head<kOrbitSize>() = regression.mean;

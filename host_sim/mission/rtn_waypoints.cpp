@@ -90,7 +90,11 @@ std::optional<fsw::Vector6> roe_of(const QnsElements& target_mean, const fsw::or
 
 std::optional<fsw::orbit::RelativeState> target_in_rtn(const TableReader& waypoint) {
   constexpr double kLargest_m = 1e5;  // beyond, relative elements are to be stated
-  if (!waypoint.has("position_rtn_m")) return std::nullopt;
+  const bool has_velocity = waypoint.has("velocity_rtn_mps");
+  if (!waypoint.has("position_rtn_m")) {
+    if (has_velocity) waypoint.refuse("velocity_rtn_mps", "a velocity without position_rtn_m", "both, or a_roe_m");
+    return std::nullopt;
+  }
   if (waypoint.has("a_roe_m")) waypoint.refuse("position_rtn_m", "both position_rtn_m and a_roe_m", "one of them");
   const auto position_m = waypoint.three_numbers("position_rtn_m", from_to(-kLargest_m, kLargest_m));
   const auto velocity_mps = waypoint.three_numbers("velocity_rtn_mps", from_to(-100.0, 100.0));

@@ -120,10 +120,9 @@ inline void expect_all_shown(const std::string& text, const std::string& file, c
     const std::vector<AcceptedKey>& keys = accepted.at(table);
     EXPECT_GE(keys.size(), 4U) << table;
     for (const std::string& key : names_of(keys)) {
-      const bool is_shown = text.find("\n" + key + " = ") != std::string::npos ||
-                            text.find("\n# " + key + " = ") != std::string::npos ||
-                            text.find("." + key + "]") != std::string::npos ||
-                            text.find("\n[" + key + "]") != std::string::npos;
+      const bool is_shown =
+          text.find("\n" + key + " = ") != std::string::npos || text.find("\n# " + key + " = ") != std::string::npos ||
+          text.find("." + key + "]") != std::string::npos || text.find("\n[" + key + "]") != std::string::npos;
       EXPECT_TRUE(is_shown) << table << '.' << key;
     }
   }

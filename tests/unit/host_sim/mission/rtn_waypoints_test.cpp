@@ -53,6 +53,8 @@ TEST(RtnWaypoints, OfARelativeEllipseHaveItsElements) {
 }
 
 TEST(RtnWaypoints, BadOnesEndWithOneMessage) {
+  EXPECT_THAT(message_of(std::string(kSmallMission), {"waypoint.1.velocity_rtn_mps=[0, 0, 0]"}),
+              HasSubstr("a velocity without position_rtn_m"));
   EXPECT_THAT(message_of(std::string(kSmallMission), {"waypoint.1.position_rtn_m=[0, 30]"}),
               HasSubstr("waypoint.1.position_rtn_m"));
   EXPECT_THAT(message_of(std::string(kSmallMission), {"waypoint.1.position_rtn_m=[0, 30, 0]"}),
