@@ -9,7 +9,7 @@
 namespace vbar::star_images {
 
 struct LensCalibration {
-  fsw::imaging::CameraModel camera;  ///< principal point as given: stars do not tell it from a rotation and p1, p2
+  fsw::imaging::CameraModel camera;  ///< principal point as given: not observable beside a rotation and p1, p2
   double focal_length_sigma_px = 0.0;
   std::vector<double> distortion_sigma;  ///< of k1, k2, p1, p2
   std::vector<StarFix> fixes;            ///< attitudes and residuals with this lens
