@@ -49,14 +49,7 @@ truth::TruthSettings all_forces() {
   truth::TruthSettings settings;
   settings.data_directory = truth::test::kDataDirectory;
   settings.gravity_degree = settings.gravity_order = 70;
-  settings.forces = {.drag = true,
-                     .geomagnetic_index = truth::GeomagneticIndex::kThreeHourly,
-                     .radiation_pressure = true,
-                     .shadow = truth::Shadow::kConical,
-                     .sun = true,
-                     .moon = true,
-                     .solid_tides = true,
-                     .relativity = true};
+  settings.forces = truth::test::kAllForces;
   return settings;
 }
 

@@ -227,14 +227,7 @@ TEST(OrbitFit, FitsTwoHoursOfSwarmAAndPredictsTheThird) {
   truth::TruthSettings settings;
   settings.data_directory = kDataDirectory;
   settings.gravity_degree = settings.gravity_order = 90;
-  settings.forces = {.drag = true,
-                     .geomagnetic_index = truth::GeomagneticIndex::kThreeHourly,
-                     .radiation_pressure = true,
-                     .shadow = truth::Shadow::kConical,
-                     .sun = true,
-                     .moon = true,
-                     .solid_tides = true,
-                     .relativity = true};
+  settings.forces = truth::test::kAllForces;
   settings.earth_orientation_file = "earth/eop_swarm_2022.csv";
   settings.space_weather_file = "earth/space_weather_swarm_2022.csv";
   for (const bool has_velocities : {true, false}) {
