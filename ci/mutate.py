@@ -113,6 +113,21 @@ def read_table(words):
     return [k for k in kernels if not words or any(w in k["name"] for w in words)]
 
 
+def declaration(kernel):
+    """What a kernel returns and takes, as its header declares it, without default arguments."""
+    text = re.sub(r"//[^\n]*", "", (ROOT / kernel["header"]).read_text(encoding="utf-8"))
+    if "of" in kernel:
+        text = text[re.search(rf"\b(class|struct) {kernel['of']}\b[^;]*?{{", text).end():]
+    name = kernel["name"].rsplit("::", 1)[1]
+    found = re.findall(rf"(?:^|[;{{}}]|\n\s*\n)\s*(?:\[\[nodiscard\]\]\s*)?((?:[^;{{}}()])*?)\b{name}\(((?:[^;{{}}]|{{}})*?)\)"
+                       r"(?:\s|const|noexcept)*[;{]", text)
+    found = [(returns.strip(), ", ".join(re.sub(r"\s*=.*", "", p, flags=re.DOTALL) for p in split(" ".join(parameters.split()))))
+             for returns, parameters in found if returns.split()[-1:] not in ([], ["return"]) and kernel.get("overload", "") in parameters]
+    if len(found) != 1:
+        raise ValueError(f"ci/mutants.toml: {kernel['header']} declares {kernel['name']} {len(found)} times")
+    return found[0]
+
+
 def split(parameters):
     """Parameters of a declaration, at the commas outside brackets."""
     found, depth, word = [], 0, ""
@@ -133,7 +148,7 @@ def name_of(parameter):
 
 def wrapper_source(kernel, symbol):
     namespace = kernel["name"].rsplit("::", 2 if "of" in kernel else 1)[0]
-    parameters, returns = kernel["parameters"], kernel["returns"]
+    returns, parameters = declaration(kernel)
     check = ""
     if "of" in kernel:
         parameters = f"{kernel['of']}* self, {parameters}"
@@ -243,6 +258,11 @@ def main():
     parser.add_argument("--tests", help="this filter for all kernels; -* is a test that cannot fail")
     options = parser.parse_args()
     kernels = read_table(options.words)
+    for kernel in kernels:  # before anything is built
+        try:
+            declaration(kernel)
+        except (ValueError, OSError) as error:
+            sys.exit(f"{error}")
     if not kernels:
         sys.exit(f"no kernel of ci/mutants.toml has {' or '.join(options.words)} in its name")
     if options.programs:

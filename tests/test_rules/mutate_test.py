@@ -7,7 +7,7 @@ import unittest
 
 ROOT, BUILD = (pathlib.Path(argument) for argument in sys.argv[1:3])
 sys.path.insert(0, str(ROOT / "ci"))
-from mutate import name_of, read_table, split  # noqa: E402
+from mutate import declaration, name_of, read_table, split  # noqa: E402
 
 
 def mutate(*arguments):
@@ -41,8 +41,18 @@ class Mutate(unittest.TestCase):
         self.assertGreaterEqual(len(kernels), 20)
         for kernel in kernels:
             with self.subTest(kernel["name"]):
-                self.assertTrue((ROOT / kernel["header"]).is_file())
-                self.assertLessEqual({"name", "header", "returns", "parameters", "program", "tests"}, set(kernel))
+                self.assertLessEqual({"name", "header", "program", "tests"}, set(kernel))
+                returns, parameters = declaration(kernel)
+                self.assertTrue(returns)
+                self.assertTrue(all(name_of(p) for p in split(parameters)))
+
+    def test_a_declaration_is_read_from_the_header(self):
+        kernel = {"name": "vbar::fsw::gnss::single_point", "header": "fsw/gnss/single_point.h"}
+        returns, parameters = declaration(kernel)
+        self.assertEqual("Result<SinglePoint>", returns)
+        self.assertNotIn("=", parameters)  # no default arguments
+        with self.assertRaisesRegex(ValueError, "declares vbar::fsw::gnss::no_such_kernel 0 times"):
+            declaration({**kernel, "name": "vbar::fsw::gnss::no_such_kernel"})
 
     def test_parameters_are_split_outside_brackets(self):
         parameters = split("std::span<float, kChunk> numbers, const double (&shape)[33], int k")
