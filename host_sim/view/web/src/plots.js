@@ -114,7 +114,7 @@ export class Plots {
     const plot = new uPlot({
       title: `${title}${name ? `, ${name}` : ''}${cut ? ` (to ${withUnit(most, unit, 3)})` : ''}${note}`, width: 380, height: kHeight, series: [{ label: 'h', value: (_, v) => (v === null || v === undefined ? '–' : v.toFixed(4)) }, ...series], bands,
       scales: { x: { time: false, range: (_, min, max) => (max > min ? [min, max] : [min - 1, max + 1]) }, y: useLog ? { distr: 3 } : cut ? { range: cut.map((y) => y * factor) } : {} },
-      axes: [{ ...axis, size: 24, values: (_, ticks) => ticks.map((t) => `${+t.toFixed(6)} h`) }, { ...axis, size: 58, values: useLog ? (_, ticks) => ticks.map((v) => (v === null ? '' : `${+v.toPrecision(3)}`)) : tickTexts }],
+      axes: [{ ...axis, size: 24, values: (_, ticks) => ticks.map((t) => `${+t.toFixed(6)} h`) }, { ...axis, size: 64, values: useLog ? (_, ticks) => ticks.map((v) => (v === null ? '' : `${+v.toPrecision(3)}`)) : tickTexts }],
       cursor: { y: false, drag: { x: true, y: false } }, legend: { live: true },
       hooks: { drawClear: [(u) => this.#shade(u)], setCursor: [(u) => this.#point(u)], setScale: [(u, key) => key === 'x' && this.#zoom(u)] },
     }, data, this.element);

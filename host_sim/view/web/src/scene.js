@@ -2,6 +2,7 @@
 
 import * as three from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import { contextOf } from './context.js';
 import { displayOf, matrixOf, norm, product, scaled, times, transposed } from './frames.js';
 import { bodyOf } from './spacecraft.js';
 import { withUnit } from './units.js';
@@ -13,18 +14,6 @@ const kMinPixels = 26;  // radius at which a spacecraft is drawn at least
 
 const vector = (a) => new three.Vector3(...a);
 const cssColour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-
-/** A WebGL context of its own canvas, smooth where a graphics processor draws it: drawn by the processor, edges of four samples
- *  would take as much memory as all else that is drawn, and a multiple of the time. */
-function contextOf() {
-  const options = { antialias: false, preserveDrawingBuffer: true };
-  const make = (more) => document.createElement('canvas').getContext('webgl2', { ...options, ...more });
-  const context = make();
-  const name = context?.getParameter(context.getExtension('WEBGL_debug_renderer_info')?.UNMASKED_RENDERER_WEBGL ?? context.RENDERER) ?? '';
-  if (!context || /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name)) return context;
-  context.getExtension('WEBGL_lose_context')?.loseContext();
-  return make({ antialias: true });
-}
 
 export class Scene {
   static async make(element, runs, motions) {
