@@ -39,7 +39,7 @@ struct TrackerSettings {
   double certainty = 0.99;         ///< required certainty of the association in an image
   double magnitude_sigma = 1.5;    ///< 1-sigma variation of a tumbling target from image to image
   double history_sigma = 1.0;      ///< magnitudes, 1-sigma variation of the target from one hour to another
-  double size_sigma = 0.5;         ///< 1-sigma variation of the logarithm of the target's lit extent
+  double size_sigma = 0.4;         ///< 1-sigma variation of the logarithm of the lit extent: faces of a box, phase
   double resolved_rad = 2e-4;      ///< apparent radius from which on an extent is more than errors of pixels
   double beside_loss = 10.0;       ///< log-likelihood of being the target, of a track that was seen beside it
   int beside_images = 30;          ///< number of images that establish that
