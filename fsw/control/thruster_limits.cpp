@@ -22,9 +22,9 @@ bool are_apart(const ThrusterLimits& limits, const Burn& burn, const Burn& other
   return between >= spacing(limits, burn.dv_rtn, other.dv_rtn);
 }
 
-/// Returns the latest time at which a burn is over at the arrival, or the earliest possible one.
+/// Returns the latest time at which a burn is over, and its report due, at the arrival, or the earliest possible one.
 GpsTime latest_time(const ThrusterLimits& limits, const BurnSpan& span, const Vector3& dv) {
-  const GpsTime latest = span.arrival - half(limits.duration_of(dv));
+  const GpsTime latest = span.arrival - half(limits.duration_of(dv)) - limits.pause;
   return latest < span.earliest ? span.earliest : latest;
 }
 

@@ -9,7 +9,7 @@
 // revolution has room for is left to the next plan.
 //
 // The eccentricity and inclination vectors change by a burn through the angle 2 b by sin(b) / b of what an impulse
-// changes them by: 0.3 % less in five minutes. The next plan contains that loss.
+// changes them by: 0.5 % less in five minutes. The next plan contains that loss.
 
 #include "fsw/control/plan.h"
 
@@ -35,7 +35,7 @@ struct ThrusterLimits {
 /// States when the burns of a plan may be.
 struct BurnSpan {
   GpsTime earliest;     ///< time of the first one
-  GpsTime arrival;      ///< end of the last one
+  GpsTime arrival;      ///< a pause after the end of the last one
   Duration revolution;  ///< of the mean argument of latitude, > 0
 };
 

@@ -101,7 +101,7 @@ TEST(ThrusterLimits, ABurnIsOverAtTheArrival) {
   EXPECT_FALSE(can_fly(plan, kLimits, span));
   const Plan earlier = divided(plan, kLimits, span);
   ASSERT_EQ(earlier.count, 1u);
-  EXPECT_EQ(kLimits.end_of(earlier.burns[0]), span.arrival);
+  EXPECT_EQ(kLimits.end_of(earlier.burns[0]) + kLimits.pause, span.arrival);
 }
 
 TEST(ThrusterLimits, SmallBurnsAreLeftOutAndLargeOnesLimited) {
