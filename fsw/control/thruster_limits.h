@@ -19,7 +19,7 @@ struct ThrusterLimits {
   double acceleration = 0.0;  ///< m/s^2, thrust over mass; 0: burns are impulses, and all plans can be flown
   double minimum_dv = 0.0;    ///< m/s
   double maximum_dv = 0.0;    ///< m/s, above minimum_dv
-  Duration pause;             ///< least time from the end of a burn to the begin of the next
+  Duration pause{};           ///< least time from the end of a burn to the begin of the next
 
   [[nodiscard]] bool are_impulses() const { return !(acceleration > 0.0); }
   /// Returns the duration of a burn; 0 of an impulse.

@@ -18,7 +18,7 @@ struct Burn {
   GpsTime time;  ///< of an impulse; the middle of a burn that lasts
   Vector3 dv_rtn =
       Vector3::Zero();            ///< m/s, in its RTN: before an impulse, rotating with the orbit in a burn that lasts
-  Duration duration;              ///< 0: an impulse
+  Duration duration{};            ///< 0: an impulse
   std::int64_t maneuver_id = -1;  ///< of the command
 
   [[nodiscard]] constexpr bool lasts() const { return duration.ns > 0; }

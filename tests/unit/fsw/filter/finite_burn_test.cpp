@@ -89,12 +89,20 @@ TEST(FiniteBurn, FollowsTheClosedFormOfAConstantAcceleration) {
 TEST(FiniteBurn, IsTheSameHoweverMeasurementsDivideIt) {
   constexpr double kUntil_s = kBegin_s + kDuration_s + 200.0;
   const auto whole = flown(quiet(1e-5, 3e-3), kUntil_s, kUntil_s, {burn()});
+  // By the burn alone: the truncation of the integration, centimetres, differs with the steps, which begin and end of
+  // the burn divide once more.
+  const auto moved = [&](const RelativeNavigationFilter& with, double period_s) {
+    const auto without = flown(quiet(1e-5, 3e-3), kUntil_s, period_s, {});
+    return Vector3(with.servicer().position_eci - without->servicer().position_eci);
+  };
+  const Vector3 expected = moved(*whole, kUntil_s);
   for (const double period_s : {7.0, 60.0, 110.0}) {
     const auto parts = flown(quiet(1e-5, 3e-3), kUntil_s, period_s, {burn()});
-    EXPECT_LT((parts->servicer().position_eci - whole->servicer().position_eci).norm(), 1e-4) << period_s;
+    EXPECT_LT((moved(*parts, period_s) - expected).norm(), 1e-3) << period_s;
     EXPECT_LT(kA * (parts->roe() - whole->roe()).norm(), 1e-3) << period_s;
+    // The noise is mapped by Gamma of a near-circular orbit: twice the eccentricity of 1.5e-3, and rounding.
     for (int k = 0; k < 6; ++k) {
-      EXPECT_NEAR(parts->roe_covariance()(k, k), whole->roe_covariance()(k, k), 2e-3 * whole->roe_covariance()(k, k));
+      EXPECT_NEAR(parts->roe_covariance()(k, k), whole->roe_covariance()(k, k), 4e-3 * whole->roe_covariance()(k, k));
     }
   }
 }
@@ -138,6 +146,8 @@ TEST(FiniteBurn, IsNotedAsImpulsesThatSumToIt) {
   EXPECT_LT((sum - kDv_rtn).norm(), 1e-12);
 }
 
+/// An impulse is in the RTN before it, a burn in that which its own change of velocity turns: by dv/v at its end, half
+/// of it in the mean. That share of 0.23 m/s is 3.5 um/s, 1.1 mm after 320 s, and 2/n of it in the elements.
 TEST(FiniteBurn, IsAnImpulseInTheLimit) {
   Burn impulse = burn();
   impulse.duration = {};
@@ -145,8 +155,9 @@ TEST(FiniteBurn, IsAnImpulseInTheLimit) {
   shortest.duration = Duration{1000};
   const auto a = flown(quiet(1e-5, 3e-3), 600.0, 45.0, {impulse});
   const auto b = flown(quiet(1e-5, 3e-3), 600.0, 45.0, {shortest});
-  EXPECT_LT((a->servicer().position_eci - b->servicer().position_eci).norm(), 1e-4);
-  EXPECT_LT(kA * (a->roe() - b->roe()).norm(), 1e-4);
+  const double turned = 0.5 * kDv_rtn.squaredNorm() / a->servicer().velocity_eci.norm();
+  EXPECT_LT((a->servicer().position_eci - b->servicer().position_eci).norm(), 320.0 * turned);
+  EXPECT_LT(kA * (a->roe() - b->roe()).norm(), 2.0 / orbit::mean_motion(kA) * turned);
   for (int k = 0; k < 6; ++k) {
     EXPECT_NEAR(a->roe_covariance()(k, k), b->roe_covariance()(k, k), 5e-3 * a->roe_covariance()(k, k));
   }

@@ -5,6 +5,7 @@
 #include "fsw/filter/dynamics.h"
 #include "fsw/filter/propagation.h"
 #include "fsw/gnc/telecommand_checks.h"
+#include "fsw/navigation/filter_configuration.h"
 #include "fsw/orbit/propagate.h"
 #include "fsw/orbit/rtn.h"
 #include "tests/unit/fsw/messaging/configurations.h"
