@@ -170,15 +170,14 @@ void NavigationSolution::take_maneuvers(GpsTime now, messaging::Inbox& inbox) {
 void NavigationSolution::take_report(GpsTime time, const executed_maneuver& report, messaging::Inbox& inbox) {
   const bool is_accepted = report.accepted != 0;
   filter::Burn burn = burn_of(report.maneuver_id, time, messaging::vector(report.dv_rtn));
-  const auto own = own_burns();
-  const auto commanded = std::find_if(own.begin(), own.end(),
-                                      [&](const filter::Burn& other) { return other.maneuver_id == burn.maneuver_id; });
-  const bool is_under_way =
-      has_reference_ && commanded != own.end() && commanded->lasts() && commanded->begin() < reference_.epoch;
+  std::size_t k = 0;
+  while (k < maneuver_count_ && maneuvers_[k].maneuver_id != burn.maneuver_id) ++k;
+  const bool is_commanded = k < maneuver_count_ && maneuvers_[k].lasts();
+  const bool is_under_way = is_commanded && has_reference_ && maneuvers_[k].begin() < reference_.epoch;
   if (is_under_way) {
     if (!is_accepted) burn.dv_rtn.setZero();
-    burn.duration = commanded->duration;
-    burn = filter::as_reported(*commanded, burn, reference_.epoch);
+    burn.duration = maneuvers_[k].duration;
+    burn = filter::as_reported(maneuvers_[k], burn, reference_.epoch);
   }
   discard(report.maneuver_id);
   if (!is_accepted && !is_under_way) return;
