@@ -56,9 +56,9 @@ bool BurnScale::differs(double share, double sigmas) const {
   return off > share && off > sigmas * sigma_;
 }
 
-void BurnMonitor::expect(std::int32_t maneuver_id, GpsTime time, const Vector3& dv_rtn) {
+void BurnMonitor::expect(std::int32_t maneuver_id, GpsTime time, const Vector3& dv_rtn, GpsTime end) {
   if (count_ == kMaxCommanded) forget(0);
-  commanded_[count_++] = {maneuver_id, time, dv_rtn};
+  commanded_[count_++] = {maneuver_id, time, dv_rtn, end};
 }
 
 void BurnMonitor::forget(std::size_t k) {
@@ -86,7 +86,7 @@ void BurnMonitor::update(GpsTime now, const messaging::Inbox& inbox, faults::Fau
       now,
       {.fault = telemetry_health::kFaultBurnUncommanded, .is_detected = is_any_uncommanded, .argument = uncommanded});
   for (std::size_t k = count_; k-- > 0;) {
-    if (now - commanded_[k].time <= kLatestReport) continue;
+    if (now - commanded_[k].end <= kLatestReport) continue;
     faults.check(now, {.fault = telemetry_health::kFaultBurnMissed,
                        .is_detected = true,
                        .argument = static_cast<double>(commanded_[k].id)});

@@ -40,8 +40,11 @@ class BurnScale {
 
 class BurnMonitor {
  public:
-  /// Notes a commanded burn.
-  void expect(std::int32_t maneuver_id, GpsTime time, const Vector3& dv_rtn);
+  /// Notes a commanded burn, whose report is due at its `end`; that of an impulse is its time.
+  void expect(std::int32_t maneuver_id, GpsTime time, const Vector3& dv_rtn, GpsTime end);
+  void expect(std::int32_t maneuver_id, GpsTime time, const Vector3& dv_rtn) {
+    expect(maneuver_id, time, dv_rtn, time);
+  }
 
   /// Checks the reports of the step, and the burns that remain without a report.
   void update(GpsTime now, const messaging::Inbox& inbox, faults::FaultMonitor& faults);
@@ -55,6 +58,7 @@ class BurnMonitor {
     std::int32_t id = 0;
     GpsTime time;
     Vector3 dv_rtn = Vector3::Zero();
+    GpsTime end;
   };
 
   void judge(const Commanded& commanded, GpsTime time, const executed_maneuver& report, GpsTime now,

@@ -112,11 +112,11 @@ void AbsoluteOrbitFilter::fail() {
 }
 
 /// The covariance is propagated by the Jacobian of point mass and J2, from differences of 100 m and 0.1 m/s.
-void AbsoluteOrbitFilter::advance(const filter::Propagation& propagation, double dt) {
+void AbsoluteOrbitFilter::advance(const filter::Propagation& propagation, double dt, const filter::Thrust& thrust) {
   if (!started_ || dt == 0.0) return;
   const orbit::CartesianState old = state();
-  const orbit::CartesianState later = propagation.coast(old, dt);
-  const orbit::CartesianState middle = filter::propagate_accelerated(old, Vector3::Zero(), dt);
+  const orbit::CartesianState later = propagation.coast(old, dt, {.empirical_rtn = thrust.acceleration_rtn});
+  const orbit::CartesianState middle = filter::propagate_accelerated(old, thrust.acceleration_rtn, dt);
   const double decay = math::exp(-dt / settings_.slow_error_time_s);
   Estimate::Matrix jacobian = Estimate::Matrix::Zero();
   Estimate::Vector mean;
@@ -129,12 +129,12 @@ void AbsoluteOrbitFilter::advance(const filter::Propagation& propagation, double
     } else {
       shifted.velocity_eci(k - 3) += step;
     }
-    const orbit::CartesianState end = filter::propagate_accelerated(shifted, Vector3::Zero(), dt);
+    const orbit::CartesianState end = filter::propagate_accelerated(shifted, thrust.acceleration_rtn, dt);
     jacobian.col(k).head<6>() << (end.position_eci - middle.position_eci) / step,
         (end.velocity_eci - middle.velocity_eci) / step;
   }
   Estimate::Matrix noise = Estimate::Matrix::Zero();
-  filter::add_acceleration_noise(noise, settings_.acceleration_psd, dt);
+  filter::add_acceleration_noise(noise, settings_.acceleration_psd + thrust.psd, dt);
   for (int axis = 0; axis < 3; ++axis) {
     jacobian(kSlowError + axis, kSlowError + axis) = decay;
     noise(kSlowError + axis, kSlowError + axis) = square(settings_.slow_error_sigma_m) * (1.0 - square(decay));

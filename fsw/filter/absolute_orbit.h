@@ -9,6 +9,7 @@
 
 #include "fsw/core/gps_time.h"
 #include "fsw/estimation/estimate.h"
+#include "fsw/filter/burn.h"
 #include "fsw/filter/propagation.h"
 #include "fsw/orbit/elements.h"
 
@@ -55,7 +56,8 @@ class AbsoluteOrbitFilter {
   /// Normalised innovation squared of the last position, three degrees of freedom; 0 of one that initialises the orbit.
   [[nodiscard]] double nis() const { return nis_; }
 
-  void advance(const filter::Propagation& propagation, double dt);
+  /// Propagates by `dt` s, with the thrust on all of it.
+  void advance(const filter::Propagation& propagation, double dt, const filter::Thrust& thrust = {});
   /// Adds a burn (m/s, ECI), known to `sigma` per axis.
   void add_impulse(const Vector3& dv_eci, double sigma);
 

@@ -9,12 +9,6 @@
 
 namespace vbar::fsw::filter {
 
-/// A burn of the servicer, executed or commanded.
-struct Burn {
-  GpsTime time;
-  Vector3 dv_rtn = Vector3::Zero();  ///< m/s, in its RTN before the burn
-};
-
 /// Acceleration of a spacecraft relative to that of the other, m/s^2.
 struct DifferentialAcceleration {
   double drag = 0.0;                        ///< along its velocity through air that rotates with the Earth

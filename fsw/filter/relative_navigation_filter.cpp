@@ -47,27 +47,31 @@ void RelativeNavigationFilter::advance_to(GpsTime time, std::span<const filter::
     return;
   }
   for (const filter::Burn& burn : burns) {
-    if (burn.time < epoch_) continue;
+    if (burn.lasts() || burn.time < epoch_) continue;
     if (burn.time >= time) break;
-    coast_to(burn.time);
+    coast_to(burn.time, burns);
     add_impulse(burn.dv_rtn);
   }
-  coast_to(time);
+  coast_to(time, burns);
 }
 
-void RelativeNavigationFilter::coast_to(GpsTime time) {
+void RelativeNavigationFilter::coast_to(GpsTime time, std::span<const filter::Burn> burns) {
   const Duration longest = has_attitude() ? kAttitudeSegment : kSegment;
   for (int segment = 0; segment < kMaxSegments && epoch_ < time; ++segment) {
-    const GpsTime next = time - epoch_ > longest ? epoch_ + longest : time;
+    const GpsTime next = next_edge(burns, epoch_, time - epoch_ > longest ? epoch_ + longest : time);
     const filter::Propagation propagation(epoch_, settings_.earth, orbit::sun_position_gcrf(epoch_).normalized());
-    const OrbitStep step{.propagation = propagation, .servicer = servicer(), .dt = seconds(next - epoch_)};
+    const OrbitStep step{.propagation = propagation,
+                         .servicer = servicer(),
+                         .dt = seconds(next - epoch_),
+                         .thrust = thrust_from(burns, epoch_, settings_.burn_errors())};
     if (solution_status_ != SolutionStatus::kNone) advance_relative(step);
-    absolute_orbit_.advance(propagation, step.dt);
+    absolute_orbit_.advance(propagation, step.dt, step.thrust);
     epoch_ = next;
     if (!absolute_orbit_.started()) {
       epoch_ = time;
       return;
     }
+    if (step.thrust.is_on) note_thrust(step);
   }
 }
 
@@ -89,16 +93,29 @@ void RelativeNavigationFilter::advance_relative(const OrbitStep& step) {
 void RelativeNavigationFilter::add_impulse(const Vector3& dv_rtn) {
   const orbit::CartesianState before = servicer();
   const Vector3 dv_eci = orbit::R_rtn_eci(before).transpose() * dv_rtn;
-  const double sigma = settings_.burn_sigma + settings_.burn_sigma_relative * math::sqrt(dv_eci.squaredNorm());
+  const double sigma = settings_.burn_errors().of(dv_eci);
   if (solution_status_ != SolutionStatus::kNone && !relative_orbit_.impulse(estimate_, before, dv_eci, sigma)) {
     fail_relative();
   }
   absolute_orbit_.add_impulse(dv_eci, sigma);
+  note_impulse({epoch_, dv_eci, dv_rtn});
+}
+
+/// Its direction is the mean of those at both ends of the step.
+void RelativeNavigationFilter::note_thrust(const OrbitStep& step) {
+  relative_orbit_.noise().interrupt();
+  const Vector3 dv_rtn = step.dt * step.thrust.acceleration_rtn;
+  const Matrix3 R_eci_rtn =
+      0.5 * (orbit::R_rtn_eci(step.servicer).transpose() + orbit::R_rtn_eci(servicer()).transpose());
+  note_impulse({epoch_ - nearest_duration(0.5 * step.dt), R_eci_rtn * dv_rtn, dv_rtn});
+}
+
+void RelativeNavigationFilter::note_impulse(const Impulse& impulse) {
   if (impulse_count_ == kMaxImpulses) {
     --impulse_count_;
     for (std::size_t k = 0; k < impulse_count_; ++k) impulses_[k] = impulses_[k + 1];
   }
-  impulses_[impulse_count_++] = {epoch_, dv_eci, dv_rtn};
+  impulses_[impulse_count_++] = impulse;
 }
 
 bool RelativeNavigationFilter::update_absolute_orbit(const AbsolutePosition& position) {

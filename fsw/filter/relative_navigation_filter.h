@@ -24,6 +24,7 @@
 #include "fsw/core/gps_time.h"
 #include "fsw/filter/absolute_orbit.h"
 #include "fsw/filter/apriori.h"
+#include "fsw/filter/burn.h"
 #include "fsw/filter/propagation.h"
 #include "fsw/filter/relative_orbit.h"
 #include "fsw/filter/state.h"
@@ -37,6 +38,7 @@ struct FilterSettings {
   orbit::EarthOrientation earth;
   double burn_sigma = 2e-6;           ///< m/s, per axis of a burn
   double burn_sigma_relative = 1e-3;  ///< share of the size of a burn
+  [[nodiscard]] BurnErrors burn_errors() const { return {burn_sigma, burn_sigma_relative}; }
   AbsoluteOrbitSettings absolute_orbit;
   RelativeOrbitSettings relative_orbit;
   TargetAttitudeSettings attitude;
@@ -64,7 +66,7 @@ struct MeasurementSource {
   }
 };
 
-/// A burn of the servicer as applied.
+/// A burn of the servicer as applied, or the part of it between two measurements as an impulse at its middle.
 struct Impulse {
   GpsTime time;
   Vector3 dv_eci = Vector3::Zero();  ///< m/s
@@ -81,7 +83,8 @@ class RelativeNavigationFilter {
   void set_apriori(const TargetApriori& apriori);
 
   /// Propagates both estimates to `time`, not before the epoch, including the burns of the servicer (in order of time)
-  /// from the epoch until then: a measurement at the time of a burn precedes it.
+  /// from the epoch until then: a measurement at the time of an impulse precedes it. Burns that last act on what of
+  /// their interval is left.
   void advance_to(GpsTime time, std::span<const filter::Burn> burns);
   [[nodiscard]] GpsTime epoch() const { return epoch_; }
   /// The last propagation of the relative estimate, of at most one segment: for its verification.
@@ -175,9 +178,11 @@ class RelativeNavigationFilter {
   [[nodiscard]] int failures() const { return failures_; }
 
  private:
-  void coast_to(GpsTime time);
+  void coast_to(GpsTime time, std::span<const filter::Burn> burns);
   void advance_relative(const OrbitStep& step);
   void add_impulse(const Vector3& dv_rtn);
+  void note_thrust(const OrbitStep& step);
+  void note_impulse(const Impulse& impulse);
   void refer_to_apriori();
   void keep_relative_state(const orbit::CartesianState& servicer_before, const orbit::CartesianState& target_before);
   void fail_relative();

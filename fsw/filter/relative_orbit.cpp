@@ -61,7 +61,8 @@ bool RelativeOrbit::advance(const Estimate& estimate, const OrbitStep& step, Hea
   using Sampled = Transform::Vector;
   Transform transform;
   const auto before = orbit::qns_from_cartesian(step.servicer);
-  const auto after = orbit::qns_from_cartesian(step.propagation.coast(step.servicer, step.dt));
+  const auto after = orbit::qns_from_cartesian(
+      step.propagation.coast(step.servicer, step.dt, {.empirical_rtn = step.thrust.acceleration_rtn}));
   if (!before.ok() || !after.ok() ||
       transform.start(estimate.mean().head<kOrbitSize>(), estimate.head_covariance<kOrbitSize>()) != Status::kOk) {
     return false;
@@ -99,6 +100,11 @@ bool RelativeOrbit::advance(const Estimate& estimate, const OrbitStep& step, Hea
     // White noise stands for the same effects.
     Matrix6 noise = motion.noise.topLeftCorner<6, 6>();
     add_velocity_noise(before.value(), noise_.psd(), step.dt, noise);
+    motion.noise.topLeftCorner<6, 6>() = noise;
+  }
+  if (step.thrust.is_on) {
+    Matrix6 noise = motion.noise.topLeftCorner<6, 6>();
+    add_velocity_noise(before.value(), step.thrust.psd, step.dt, noise);
     motion.noise.topLeftCorner<6, 6>() = noise;
   }
   return true;

@@ -8,6 +8,7 @@
 // cancel.
 
 #include "fsw/filter/adaptive_noise.h"
+#include "fsw/filter/burn.h"
 #include "fsw/filter/propagation.h"
 #include "fsw/filter/state.h"
 #include "fsw/orbit/elements.h"
@@ -28,7 +29,8 @@ struct RelativeOrbitSettings {
 struct OrbitStep {
   const filter::Propagation& propagation;
   orbit::CartesianState servicer;
-  double dt = 0.0;  ///< s
+  double dt = 0.0;          ///< s
+  filter::Thrust thrust{};  ///< of the servicer, on all of the step
 };
 
 /// Propagation of the sampled states at the head of the estimate: x <- mean + jacobian (x - old mean) + noise.

@@ -10,7 +10,7 @@ void Gnc::command_maneuvers() {
     const guidance::CommandedBurn& commanded = guidance_.command(k);
     const Vector3 dv_rtn = command_for(commanded.burn.dv_rtn);
     navigation_.expect_maneuver(commanded.maneuver_id, commanded.burn.time, commanded.burn.dv_rtn);
-    burns_.expect(commanded.maneuver_id, commanded.burn.time, dv_rtn);
+    burns_.expect(commanded.maneuver_id, commanded.burn.time, dv_rtn, guidance_.end_of(commanded.burn));
     safety_monitor_.take_command(commanded.maneuver_id, dv_rtn);
     maneuver_command message{};
     message.maneuver_id = commanded.maneuver_id;

@@ -9,6 +9,7 @@
 #include "fsw/guidance/drift_assessment.h"
 #include "fsw/math/math.h"
 #include "fsw/orbit/mean_osculating.h"
+#include "fsw/orbit/propagate.h"
 #include "fsw/orbit/roe.h"
 
 namespace vbar::fsw::guidance {
@@ -83,6 +84,7 @@ void Guidance::assess(GpsTime now, const navigation::NavigationSolution& navigat
 
   const gnc_configuration& configuration = management.configuration();
   situation_known_ = true;
+  set_limits(management);
   discard_past_burns(now);
   orbits_ = {now, servicer.value(), target.value()};
   report_.roe = orbit::roe_from_qns(orbits_.servicer, orbits_.target);
@@ -145,7 +147,7 @@ void Guidance::drop_plan() {
 void Guidance::command_retreat(GpsTime now, const gnc_configuration& configuration, RetreatSequence& retreat) {
   drop_plan();
   earliest_burn_ = now + Duration{configuration.compute_latency_ns};
-  drop_burns_before(pending_, now);
+  pending_ = control::remaining(pending_, limits_, now);
   const control::Burn burn{.time = earliest_start(), .dv_rtn = retreat.burn_at(earliest_start())};
   retreat.commanded(burn.time);
   if (burn.dv_rtn.norm() < configuration.minimum_dv || pending_.count == control::kMaxBurns) return;
@@ -307,7 +309,19 @@ Plan Guidance::refined(const Plan& candidate) const {
   return corrected.value();
 }
 
-bool Guidance::adopt_if_flyable(const Plan& candidate, const gnc_configuration& configuration) {
+/// Divides what the thruster cannot fly at once, and corrects the sizes of all burns for it. What is left over remains
+/// as the arrival error that the next plan begins with.
+Plan Guidance::flyable(const Plan& candidate) const {
+  if (control::can_fly(candidate, limits_, burn_span())) return candidate;
+  const Plan parts = control::without_small_burns(control::divided(candidate, limits_, burn_span()), limits_);
+  const Plan corrected = control::limited(refined(parts), limits_);
+  const Result<Vector6> before = control::evaluate_plan(leg_situation(), parts);
+  const Result<Vector6> after = control::evaluate_plan(leg_situation(), corrected);
+  return after.ok() && before.ok() && after.value().norm() < before.value().norm() ? corrected : parts;
+}
+
+bool Guidance::adopt_if_flyable(const Plan& wanted, const gnc_configuration& configuration) {
+  const Plan candidate = flyable(wanted);
   if (!is_flyable(candidate, configuration)) {
     status_of(candidate.solver) = Status::kOutOfRange;
     return false;
@@ -359,13 +373,26 @@ Result<safety::PlanSafety> Guidance::safety_of(const Plan& candidate, const gnc_
 /// Returns the earliest time of a new burn: after the latency and after all commanded burns.
 GpsTime Guidance::earliest_start() const {
   if (pending_.count == 0) return earliest_burn_;
-  const GpsTime after_pending = pending_.burns[pending_.count - 1].time + Duration{1};
+  const GpsTime after_pending = limits_.after(pending_.burns[pending_.count - 1]);
   return after_pending > earliest_burn_ ? after_pending : earliest_burn_;
 }
 
-/// Discards commanded burns whose time has passed: the state contains them.
+/// Returns the times of burns of a plan for the leg.
+control::BurnSpan Guidance::burn_span() const {
+  const double rate = orbit::secular_rates(orbits_.servicer).mean_argument_of_latitude();
+  return {.earliest = earliest_start(), .arrival = goal_.time, .revolution = nearest_duration(2.0 * math::kPi / rate)};
+}
+
+void Guidance::set_limits(const Management& management) {
+  limits_ = {.acceleration = management.thruster().thrust_acceleration,
+             .minimum_dv = management.configuration().minimum_dv,
+             .maximum_dv = management.configuration().maximum_dv,
+             .pause = nearest_duration(management.thruster().pause_s)};
+}
+
+/// Discards commanded burns that are over: the state contains them.
 void Guidance::discard_past_burns(GpsTime now) {
-  drop_burns_before(pending_, now);
+  pending_ = control::remaining(pending_, limits_, now);
   drop_burns_before(plan_, now);  // a planned burn can only be past if steps were missed: it was never commanded
 }
 

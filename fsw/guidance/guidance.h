@@ -13,6 +13,7 @@
 #include "fsw/control/leg.h"
 #include "fsw/control/plan.h"
 #include "fsw/control/solver_list.h"
+#include "fsw/control/thruster_limits.h"
 #include "fsw/guidance/lit_windows.h"
 #include "fsw/guidance/management.h"
 #include "fsw/guidance/retreat_sequence.h"
@@ -79,6 +80,8 @@ class Guidance {
   [[nodiscard]] const GuidanceReport& report() const { return report_; }
   [[nodiscard]] std::size_t command_count() const { return command_count_; }
   [[nodiscard]] const CommandedBurn& command(std::size_t k) const { return commands_[k]; }
+  /// Returns when a burn is over.
+  [[nodiscard]] GpsTime end_of(const control::Burn& burn) const { return limits_.end_of(burn); }
   [[nodiscard]] const control::Plan& plan() const { return plan_; }
   [[nodiscard]] double commanded_dv() const { return commanded_dv_; }
   [[nodiscard]] std::int32_t commanded_maneuvers() const { return next_maneuver_id_; }
@@ -95,8 +98,9 @@ class Guidance {
   bool solver_fallback(const gnc_configuration& configuration, bool estimate_too_coarse);
   bool adopt_cheaper(const control::Plan& candidate, const gnc_configuration& configuration);
   [[nodiscard]] double expected_cost(const control::Plan& plan, const gnc_configuration& configuration) const;
-  bool adopt_if_flyable(const control::Plan& candidate, const gnc_configuration& configuration);
+  bool adopt_if_flyable(const control::Plan& wanted, const gnc_configuration& configuration);
   [[nodiscard]] control::Plan refined(const control::Plan& candidate) const;
+  [[nodiscard]] control::Plan flyable(const control::Plan& candidate) const;
   template <class Entry>
   Result<control::Plan> solve(const gnc_configuration& configuration);
   Status& status_of(control::Solver solver) { return report_.status[control::place_of(solver)]; }
@@ -108,6 +112,8 @@ class Guidance {
   [[nodiscard]] control::LegSituation leg_situation() const;
   [[nodiscard]] control::LegPolicy leg_policy(const gnc_configuration& configuration) const;
   [[nodiscard]] GpsTime earliest_start() const;
+  [[nodiscard]] control::BurnSpan burn_span() const;
+  void set_limits(const Management& management);
   void discard_past_burns(GpsTime now);
   void commit_due_burns(GpsTime now, Duration period, const gnc_configuration& configuration);
 
@@ -115,6 +121,7 @@ class Guidance {
   std::optional<safety_configuration> safety_;  ///< in force in this step
   bool situation_known_ = false;
   GpsTime earliest_burn_;
+  control::ThrusterLimits limits_;
   control::MeanOrbits orbits_;
   std::optional<LitWindows> lit_;            ///< burns are restricted to sunlight
   Vector6 sigma_roe_ = Vector6::Zero();      ///< 1 sigma, dimensionless
@@ -126,7 +133,7 @@ class Guidance {
   bool has_goal_ = false;
   bool is_holding_ = false;
   control::Plan plan_;                        ///< still to be commanded
-  control::Plan pending_;                     ///< commanded, not yet due
+  control::Plan pending_;                     ///< commanded, not yet due, or the rest of a burn under way
   std::optional<control::Plan> alternative_;  ///< to a new plan in this decision: the previous one, which misses
   GpsTime next_decision_;
   std::array<CommandedBurn, kMaxCommandsPerStep> commands_{};

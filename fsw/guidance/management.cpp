@@ -34,6 +34,7 @@ Management::Management() : configuration_(default_configuration()) {}
 
 void Management::update(GpsTime now, const messaging::Telecommands& telecommands) {
   if (telecommands.is_new<gnc_configuration>()) configuration_ = *telecommands.in_force<gnc_configuration>();
+  if (telecommands.is_new<thruster_configuration>()) thruster_ = *telecommands.in_force<thruster_configuration>();
   if (telecommands.is_new<safety_configuration>()) {
     safety_ = *telecommands.in_force<safety_configuration>();
     has_safety_ = true;

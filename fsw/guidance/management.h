@@ -53,6 +53,8 @@ class Management {
   /// Returns the safety configuration in force, or nullptr.
   [[nodiscard]] const safety_configuration* safety() const { return has_safety_ ? &safety_ : nullptr; }
   [[nodiscard]] const gnc_configuration& configuration() const { return configuration_; }
+  /// Returns the thruster: with impulses, if no telecommand says otherwise.
+  [[nodiscard]] const thruster_configuration& thruster() const { return thruster_; }
   [[nodiscard]] double reference_semi_major_axis() const { return reference_semi_major_axis_; }
 
   /// Returns the waypoint ahead (time later than the last update), or nullptr.
@@ -67,6 +69,7 @@ class Management {
   Mode mode_ = Mode::kIdle;
   bool is_suspended_ = false;
   gnc_configuration configuration_;
+  thruster_configuration thruster_{};
   safety_configuration safety_{};
   bool has_safety_ = false;
   double reference_semi_major_axis_ = 0.0;

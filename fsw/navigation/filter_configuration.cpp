@@ -5,6 +5,7 @@
 #include "fsw/messaging/inbox.h"
 #include "fsw/messaging/message_fields.h"
 #include "fsw/orbit/elements.h"
+#include "fsw/orbit/finite_burn.h"
 
 namespace vbar::fsw::navigation {
 namespace {
@@ -13,6 +14,7 @@ using messaging::is_between;
 using messaging::is_positive;
 
 constexpr double kLargestARoe = 1e6;  // m; beyond it the relative-orbit models are not valid
+constexpr double kLongestPause_s = 3600.0;
 
 // A limit of the process noise above that of two like spacecraft states larger differential accelerations: drag, a
 // state of its own, begins with the acceleration that the limit stands for over a revolution.
@@ -43,7 +45,11 @@ bool is_valid(const earth_configuration& c) {
 }
 
 bool is_valid(const thruster_configuration& c) {
-  return is_positive(c.sigma_mps, 1.0) && is_between(c.sigma_relative, 0.0, 1.0);
+  const bool is_impulsive = c.thrust_acceleration == 0.0;
+  return is_positive(c.sigma_mps, 1.0) && is_between(c.sigma_relative, 0.0, 1.0) &&
+         (is_impulsive ||
+          is_between(c.thrust_acceleration, orbit::kLeastThrustAcceleration, orbit::kMostThrustAcceleration)) &&
+         is_between(c.pause_s, 0.0, kLongestPause_s);
 }
 
 bool is_valid(const target_apriori& a) {

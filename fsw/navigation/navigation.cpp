@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <span>
 
+#include "fsw/filter/dynamics.h"
 #include "fsw/math/math.h"
 #include "fsw/messaging/message_fields.h"
+#include "fsw/orbit/finite_burn.h"
 #include "fsw/orbit/propagate.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
@@ -111,6 +113,9 @@ void NavigationSolution::set_uncertainty(GpsTime now, const filter::RelativeNavi
 /// Discards the state if its sources or the a-priori orbit are commanded: the next estimate of the filter, which may be
 /// the present one, becomes the reference state.
 void NavigationSolution::configure(const messaging::Telecommands& telecommands) {
+  if (telecommands.is_new<thruster_configuration>()) {
+    thrust_acceleration_ = telecommands.in_force<thruster_configuration>()->thrust_acceleration;
+  }
   if (telecommands.is_new<navigation_configuration>()) {
     constexpr std::int32_t kCamera = measurements::BearingSource::kUse | measurements::KeypointSource::kUse;
     uses_camera_ = (telecommands.in_force<navigation_configuration>()->sources & kCamera) != 0;
@@ -122,9 +127,11 @@ void NavigationSolution::configure(const messaging::Telecommands& telecommands) 
   handed_over_ = is_handed_over ? telecommands.time_of<target_apriori>() : GpsTime{};
 }
 
-std::span<const filter::Burn> NavigationSolution::own_burns() {
-  for (std::size_t k = 0; k < maneuver_count_; ++k) burns_[k] = {maneuvers_[k].time, maneuvers_[k].dv_rtn};
-  return std::span(burns_).first(maneuver_count_);
+filter::Burn NavigationSolution::burn_of(std::int32_t maneuver_id, GpsTime time, const Vector3& dv_rtn) const {
+  return {.time = time,
+          .dv_rtn = dv_rtn,
+          .duration = orbit::burn_duration(dv_rtn.norm(), thrust_acceleration_),
+          .maneuver_id = maneuver_id};
 }
 
 /// Adopts an estimate as the reference state if it is later than the current one.
@@ -149,22 +156,40 @@ void NavigationSolution::take_maneuvers(GpsTime now, messaging::Inbox& inbox) {
   for (std::size_t k = 0; k < reports.size(); ++k) {
     const GpsTime time = reports[k].tag.time;
     const executed_maneuver& report = reports[k].value;
-    if (time > now) {
+    // A burn that lasts is refused at its begin, before its time.
+    const bool is_early_refusal = report.accepted == 0 && thrust_acceleration_ > 0.0;
+    if (time > now && !is_early_refusal) {
       inbox.count_unusable_time();
       continue;
     }
-    discard(report.maneuver_id);
-    if (report.accepted == 0) continue;
-    if (!has_reference_ || time >= reference_.epoch) {
-      remember({report.maneuver_id, time, messaging::vector(report.dv_rtn)});
-    } else if (time >= state_.last_measurement) {
-      inbox.count_unusable_time();  // before the reference state: no longer applicable
-    }
+    take_report(time, report, inbox);
+  }
+}
+
+/// A measurement within a burn leaves a reference state that holds a part of it, as commanded.
+void NavigationSolution::take_report(GpsTime time, const executed_maneuver& report, messaging::Inbox& inbox) {
+  const bool is_accepted = report.accepted != 0;
+  filter::Burn burn = burn_of(report.maneuver_id, time, messaging::vector(report.dv_rtn));
+  std::size_t k = 0;
+  while (k < maneuver_count_ && maneuvers_[k].maneuver_id != burn.maneuver_id) ++k;
+  const bool is_commanded = k < maneuver_count_ && maneuvers_[k].lasts();
+  const bool is_under_way = is_commanded && has_reference_ && maneuvers_[k].begin() < reference_.epoch;
+  if (is_under_way) {
+    if (!is_accepted) burn.dv_rtn.setZero();
+    burn.duration = maneuvers_[k].duration;
+    burn = filter::as_reported(maneuvers_[k], burn, reference_.epoch);
+  }
+  discard(report.maneuver_id);
+  if (!is_accepted && !is_under_way) return;
+  if (!has_reference_ || burn.acts_on(reference_.epoch)) {
+    remember(burn);
+  } else if (time >= state_.last_measurement) {
+    inbox.count_unusable_time();  // before the reference state: no longer applicable
   }
 }
 
 void NavigationSolution::expect_maneuver(std::int32_t maneuver_id, GpsTime time, const Vector3& dv_rtn) {
-  remember({maneuver_id, time, dv_rtn});
+  remember(burn_of(maneuver_id, time, dv_rtn));
 }
 
 /// Moves the reference state to `time`: without measurements it follows, so that the work of a step stays bounded.
@@ -181,12 +206,13 @@ Result<NavigationSolution::Pair> NavigationSolution::flown_to(GpsTime time) cons
   orbit::CartesianState servicer = reference_.servicer;
   GpsTime reached = reference_.epoch;
   const auto coast_to = [&](GpsTime next) {
-    const Result<orbit::CartesianState> coasted = orbit::propagate_j2(servicer, seconds(next - reached));
-    if (coasted.ok()) servicer = coasted.value();
+    const Result<orbit::CartesianState> later = coasted(servicer, reached, next);
+    if (later.ok()) servicer = later.value();
     reached = next;
-    return coasted.status();
+    return later.status();
   };
   for (std::size_t k = 0; k < maneuver_count_ && maneuvers_[k].time < time; ++k) {
+    if (maneuvers_[k].lasts()) continue;
     if (const Status status = coast_to(maneuvers_[k].time); status != Status::kOk) return status;
     servicer = orbit::apply_impulse_rtn(servicer, maneuvers_[k].dv_rtn);
   }
@@ -197,25 +223,46 @@ Result<NavigationSolution::Pair> NavigationSolution::flown_to(GpsTime time) cons
   return Pair{time, servicer, target.value()};
 }
 
+/// Returns the state at `to`, with the burns that last.
+Result<orbit::CartesianState> NavigationSolution::coasted(const orbit::CartesianState& servicer, GpsTime from,
+                                                          GpsTime to) const {
+  orbit::CartesianState state = servicer;
+  GpsTime reached = from;
+  for (std::size_t arc = 0; arc <= 2 * kMaxManeuvers; ++arc) {
+    const GpsTime next = filter::next_edge(own_burns(), reached, to);
+    const filter::Thrust thrust = filter::thrust_from(own_burns(), reached);
+    if (thrust.is_on) {
+      state = filter::propagate_accelerated(state, thrust.acceleration_rtn, seconds(next - reached));
+    } else {
+      const Result<orbit::CartesianState> later = orbit::propagate_j2(state, seconds(next - reached));
+      if (!later.ok()) return later;
+      state = later.value();
+    }
+    reached = next;
+    if (reached >= to) break;
+  }
+  return state;
+}
+
 /// Inserts a maneuver in order of time, those of one instant in order of their number. If the list is full, the
 /// reference state advances past the oldest maneuver: measurements before it can then no longer be used.
-void NavigationSolution::remember(const OwnManeuver& maneuver) {
+void NavigationSolution::remember(const filter::Burn& maneuver) {
   if (maneuver_count_ == kMaxManeuvers) {
-    if (has_reference_) move_reference(maneuvers_[0].time + Duration{1});
-    if (maneuver_count_ == kMaxManeuvers) discard(maneuvers_[0].id);
+    if (has_reference_) move_reference(maneuvers_[0].end() + Duration{1});
+    if (maneuver_count_ == kMaxManeuvers) discard(maneuvers_[0].maneuver_id);
   }
   std::size_t place = maneuver_count_++;
-  const auto comes_before = [&](const OwnManeuver& other) {
-    return maneuver.time < other.time || (maneuver.time == other.time && maneuver.id < other.id);
+  const auto comes_before = [&](const filter::Burn& other) {
+    return maneuver.time < other.time || (maneuver.time == other.time && maneuver.maneuver_id < other.maneuver_id);
   };
   for (; place > 0 && comes_before(maneuvers_[place - 1]); --place) maneuvers_[place] = maneuvers_[place - 1];
   maneuvers_[place] = maneuver;
 }
 
-void NavigationSolution::discard(std::int32_t maneuver_id) {
+void NavigationSolution::discard(std::int64_t maneuver_id) {
   std::size_t kept = 0;
   for (std::size_t k = 0; k < maneuver_count_; ++k) {
-    if (maneuvers_[k].id != maneuver_id) maneuvers_[kept++] = maneuvers_[k];
+    if (maneuvers_[k].maneuver_id != maneuver_id) maneuvers_[kept++] = maneuvers_[k];
   }
   maneuver_count_ = kept;
 }
@@ -223,7 +270,7 @@ void NavigationSolution::discard(std::int32_t maneuver_id) {
 void NavigationSolution::discard_before(GpsTime time) {
   std::size_t kept = 0;
   for (std::size_t k = 0; k < maneuver_count_; ++k) {
-    if (maneuvers_[k].time >= time) maneuvers_[kept++] = maneuvers_[k];
+    if (maneuvers_[k].acts_on(time)) maneuvers_[kept++] = maneuvers_[k];
   }
   maneuver_count_ = kept;
 }

@@ -69,24 +69,22 @@ class NavigationSolution {
     orbit::CartesianState servicer;
     orbit::CartesianState target;
   };
-  struct OwnManeuver {
-    std::int32_t id = 0;
-    GpsTime time;
-    Vector3 dv_rtn = Vector3::Zero();
-  };
-
   void configure(const messaging::Telecommands& telecommands);
   void adopt_estimate(const MeasurementScheduler& measurements);
   void set_reference(const Pair& estimated);
   void drop_state();
-  [[nodiscard]] std::span<const filter::Burn> own_burns();
+  [[nodiscard]] std::span<const filter::Burn> own_burns() const { return std::span(maneuvers_).first(maneuver_count_); }
+  [[nodiscard]] filter::Burn burn_of(std::int32_t maneuver_id, GpsTime time, const Vector3& dv_rtn) const;
   [[nodiscard]] NavigationSource source_of(GpsTime now, const MeasurementScheduler& measurements) const;
   void set_uncertainty(GpsTime now, const filter::RelativeNavigationFilter& filter);
   void take_maneuvers(GpsTime now, messaging::Inbox& inbox);
+  void take_report(GpsTime time, const executed_maneuver& report, messaging::Inbox& inbox);
   void move_reference(GpsTime time);
   [[nodiscard]] Result<Pair> flown_to(GpsTime time) const;
-  void remember(const OwnManeuver& maneuver);
-  void discard(std::int32_t maneuver_id);
+  [[nodiscard]] Result<orbit::CartesianState> coasted(const orbit::CartesianState& servicer, GpsTime from,
+                                                      GpsTime to) const;
+  void remember(const filter::Burn& maneuver);
+  void discard(std::int64_t maneuver_id);
   void discard_before(GpsTime time);
 
   static constexpr std::size_t kMaxManeuvers = 64;  // twice the number that guidance may have commanded ahead
@@ -94,12 +92,12 @@ class NavigationSolution {
   NavigationState state_;
   bool has_reference_ = false;
   Pair reference_;
-  std::array<OwnManeuver, kMaxManeuvers> maneuvers_{};  ///< in order of time, none before the reference state
+  std::array<filter::Burn, kMaxManeuvers> maneuvers_{};  ///< in order of time, none before the reference state
   std::size_t maneuver_count_ = 0;
 
   bool uses_camera_ = false;
-  GpsTime handed_over_;  ///< by previous navigation, as a-priori ROE
-  std::array<filter::Burn, kMaxManeuvers> burns_{};
+  GpsTime handed_over_;               ///< by previous navigation, as a-priori ROE
+  double thrust_acceleration_ = 0.0;  ///< m/s^2; 0: burns are impulses
 };
 
 }  // namespace vbar::fsw::navigation

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "fsw/core/gps_time.h"
+#include "fsw/orbit/finite_burn.h"
 
 namespace vbar::sensors {
 
@@ -29,6 +30,24 @@ void limit_burns(const mission::Spacecraft& servicer, vbar::gnc_configuration& c
                     "from dv_min_mmps to dv_max_mps",
                     servicer.name, least_mps, most_mps));
   }
+}
+
+vbar::thruster_configuration thruster_configuration_of(const mission::Mission& mission,
+                                                       const mission::Spacecraft& servicer) {
+  vbar::thruster_configuration configuration = mission.navigation.thruster;
+  if (!servicer.thruster || !servicer.thruster->finite) return configuration;
+  const twins::ThrusterProperties& thruster = *servicer.thruster->finite;
+  configuration.thrust_acceleration = thruster.thrust_n / servicer.surface.mass_kg;
+  configuration.pause_s = thruster.rise_s + thruster.fall_s;
+  const double acceleration = configuration.thrust_acceleration;
+  constexpr double kLeast = fsw::orbit::kLeastThrustAcceleration, kMost = fsw::orbit::kMostThrustAcceleration;
+  if (!(acceleration >= kLeast && acceleration <= kMost)) {
+    throw std::runtime_error(fmt::format(
+        "spacecraft \"{}\": actuators.thruster.thrust_n: found {:g} N on {:g} kg, {:.3g} m/s^2; accepted: {:g} "
+        "to {:g} m/s^2",
+        servicer.name, thruster.thrust_n, servicer.surface.mass_kg, acceleration, kLeast, kMost));
+  }
+  return configuration;
 }
 
 std::string note_on_burns(const mission::Spacecraft& servicer, const vbar::gnc_configuration& stated) {

@@ -8,6 +8,7 @@
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/roe.h"
 #include "host_sim/engine/random_stream.h"
+#include "host_sim/installation/burn_limits.h"
 
 namespace vbar::sensors {
 namespace {
@@ -104,10 +105,12 @@ vbar::target_apriori target_apriori_of(const Mission& mission, const Spacecraft&
 
 void add_navigation_telecommands(const TelecommandContext& context, Telecommands& telecommands) {
   const std::int32_t sources = sources_of(context.servicer);
-  if (sources == 0 || (sources & Use::kUseIdeal) != 0) return;
+  const vbar::thruster_configuration thruster = thruster_configuration_of(context.mission, context.servicer);
+  const bool is_ideal = sources == 0 || (sources & Use::kUseIdeal) != 0;
+  if (!is_ideal || thruster.thrust_acceleration > 0.0) telecommands.add(thruster);
+  if (is_ideal) return;
   telecommands.add(navigation_configuration_of(context.mission, context.servicer));
   telecommands.add(earth_configuration_of(context.mission, context.earth_orientation));
-  telecommands.add(context.mission.navigation.thruster);
   const std::string observed = observed_by_camera(context.servicer);
   if (observed.empty() || context.mission.navigation.apriori == mission::Apriori::kNone) return;
   telecommands.add(target_apriori_of(context.mission, context.servicer, context.state_at_start(context.servicer.name),

@@ -342,8 +342,7 @@ void Simulation::execute(const maneuver_command& command, GpsTime burn_time) {
   const twins::Execution execution = world_.thruster.execute(command, burn_time, now);
   if (execution.arc) {
     world_.truth.begin_burn(*execution.arc);
-    return schedule(now + fsw::nearest_duration(execution.arc->end_s() - execution.arc->begin_s),
-                    ReportBurn{execution});
+    return schedule(now + fsw::nearest_duration(execution.arc->duration_s()), ReportBurn{execution});
   }
   const double(&dv)[3] = execution.maneuver.dv_rtn;
   world_.truth.apply_impulse_rtn({dv[0], dv[1], dv[2]});

@@ -11,10 +11,6 @@ fsw::Vector3 dv_of(const vbar::maneuver_command& command) {
   return fsw::Vector3(command.dv_rtn[0], command.dv_rtn[1], command.dv_rtn[2]);
 }
 
-double duration_of(const truth::ThrustArc& arc) {
-  return arc.rise_s + arc.hold_s + arc.fall_s;
-}
-
 /// Time for which the valve is open.
 double on_time_of(const truth::ThrustArc& arc) {
   return arc.rise_s + arc.hold_s;
@@ -51,7 +47,7 @@ truth::ThrustArc FiniteThruster::arc_of(const fsw::Vector3& dv_rtn) const {
 }
 
 fsw::Duration FiniteThruster::lead(const vbar::maneuver_command& command) const {
-  return fsw::nearest_duration(0.5 * duration_of(arc_of(dv_of(command))));
+  return fsw::nearest_duration(0.5 * arc_of(dv_of(command)).duration_s());
 }
 
 const char* FiniteThruster::reason_against(const truth::ThrustArc& arc, fsw::GpsTime begin, fsw::GpsTime now) const {
@@ -76,7 +72,7 @@ Execution FiniteThruster::execute(const vbar::maneuver_command& command, fsw::Gp
   execution.time = burn_time;
   execution.maneuver.maneuver_id = command.maneuver_id;
   truth::ThrustArc arc = arc_of(dv_of(command));
-  const fsw::GpsTime begin = burn_time - fsw::nearest_duration(0.5 * duration_of(arc));
+  const fsw::GpsTime begin = burn_time - fsw::nearest_duration(0.5 * arc.duration_s());
   if (const char* const reason = reason_against(arc, begin, now); reason != nullptr) {
     execution.notes.push_back({"rejected", 1.0, reason});
   } else {
@@ -94,7 +90,7 @@ Execution FiniteThruster::execute(const vbar::maneuver_command& command, fsw::Gp
     execution.maneuver.accepted = 1;
     std::copy(dv_rtn.begin(), dv_rtn.end(), execution.maneuver.dv_rtn);
     used_kg_ += propellant_kg;
-    busy_until_ = begin + fsw::nearest_duration(duration_of(arc));
+    busy_until_ = begin + fsw::nearest_duration(arc.duration_s());
     execution.notes.push_back({"on_time_s", on_time_of(arc)});
     execution.notes.push_back({"propellant_kg", propellant_kg});
     execution.notes.push_back({"mass_kg", mass_after_kg});

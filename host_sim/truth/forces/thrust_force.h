@@ -18,6 +18,7 @@ struct ThrustArc {
   double mass_kg = 0.0;                                ///< at its begin
   double exhaust_velocity_mps = 0.0;                   ///< specific impulse times standard gravity
 
+  [[nodiscard]] double duration_s() const { return rise_s + hold_s + fall_s; }
   [[nodiscard]] double end_s() const { return begin_s + rise_s + hold_s + fall_s; }
   [[nodiscard]] double force_n(double seconds) const;
   /// Returns the integral of the force from the begin on, N s.

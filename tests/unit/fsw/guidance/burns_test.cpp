@@ -131,6 +131,41 @@ TEST(Burns, BelowTheLeastAreLeftOut) {
   EXPECT_GT(flight.executed, 0);
 }
 
+// A weak thruster: 2 mm/s take 100 s. Without its limits these legs have burns of twice that.
+TEST(Burns, OfAWeakThrusterAreAsItCanGiveThem) {
+  for (const std::int8_t solver : {0, 1, 2}) {
+    gnc_configuration c = configuration();
+    c.maximum_dv = 2e-3;
+    c.minimum_dv = 2e-5;
+    c.compute_latency_ns = duration_of_seconds(51).ns;
+    Flight flight = approach(solver, c);
+    thruster_configuration thruster{};
+    thruster.sigma_mps = 2e-6;
+    thruster.thrust_acceleration = 2e-5;
+    thruster.pause_s = 2.0;
+    flight.send(thruster);
+    GpsTime free_from = kEpoch;
+    while (flight.now < at(3 * 3600)) {
+      const GpsTime now = flight.now;
+      const Answer answer = flight.step();
+      EXPECT_EQ(answer.health.holds, 0) << int{solver};
+      for (const Command& command : answer.commands) {
+        const double(&dv)[3] = command.message.dv_rtn;
+        const double size = Vector3(dv[0], dv[1], dv[2]).norm();
+        const Duration half = nearest_duration(0.5 * size / thruster.thrust_acceleration);
+        EXPECT_LE(size, c.maximum_dv);
+        EXPECT_GE(size, c.minimum_dv);
+        EXPECT_GE(command.time - half, now + duration_of_seconds(1));
+        EXPECT_GE((command.time - half).ns, free_from.ns) << int{solver};
+        free_from = command.time + half + duration_of_seconds(2);
+      }
+    }
+    EXPECT_GT(flight.executed, 3);
+    EXPECT_LT((flight.world.a_roe_m() - kNear).norm(), 1.0) << int{solver};
+    EXPECT_LT(flight.executed_dv, 5e-2);
+  }
+}
+
 TEST(Burns, NoneBeforeThePlannersStart) {
   gnc_configuration c = configuration();
   c.planner_start_ns = at(1200).ns;

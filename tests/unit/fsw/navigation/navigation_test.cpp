@@ -2,8 +2,10 @@
 
 #include "fsw/navigation/navigation.h"
 
+#include "fsw/filter/dynamics.h"
 #include "fsw/filter/propagation.h"
 #include "fsw/gnc/telecommand_checks.h"
+#include "fsw/navigation/filter_configuration.h"
 #include "fsw/orbit/propagate.h"
 #include "fsw/orbit/rtn.h"
 #include "tests/unit/fsw/messaging/configurations.h"
@@ -169,6 +171,72 @@ TEST_F(NavigationTest, ABurnAtTheStepsTimeIsOfTheNextStep) {
   update(120);
   const auto expected = orbit::propagate_j2(orbit::apply_impulse_rtn(servicer_state(), {0.0, 0.5, 0.0}), 60.0);
   EXPECT_EQ(navigation_.state().servicer.position_eci, expected.value().position_eci);
+}
+
+/// Navigation that knows the thruster: 0.2 m/s in 300 s.
+class FiniteBurnNavigationTest : public NavigationTest {
+ protected:
+  void SetUp() override {
+    thruster_configuration thruster = gnc::test::thruster();
+    thruster.thrust_acceleration = 0.02 / 30.0;
+    EXPECT_EQ(inbox_.receive(packet_of({0}, thruster)), Status::kOk);
+    EXPECT_EQ(inbox_.receive(packet_of({0}, measurement_of(servicer_state()))), Status::kOk);
+    update(0);
+    navigation_.expect_maneuver(5, {250 * kSecond}, {0.0, 0.2, 0.0});  // 100 s to 400 s
+  }
+  static orbit::CartesianState accelerated(const orbit::CartesianState& state, double share, double dt) {
+    return filter::propagate_accelerated(state, {0.0, share * 0.02 / 30.0, 0.0}, dt);
+  }
+  executed_maneuver report(double dv_t) {
+    executed_maneuver report{};
+    report.maneuver_id = 5;
+    report.accepted = dv_t != 0.0 ? 1 : 0;
+    report.dv_rtn[1] = dv_t;
+    return report;
+  }
+  const orbit::CartesianState at_begin_ = orbit::propagate_j2(servicer_state(), 100.0).value();
+};
+
+TEST_F(FiniteBurnNavigationTest, ABurnActsFromItsBeginOn) {
+  update(180);
+  EXPECT_LT((navigation_.state().servicer.position_eci - accelerated(at_begin_, 1.0, 80.0).position_eci).norm(), 1e-6);
+  update(460);
+  const auto after = orbit::propagate_j2(accelerated(at_begin_, 1.0, 300.0), 60.0).value();
+  EXPECT_LT((navigation_.state().servicer.position_eci - after.position_eci).norm(), 1e-6);
+}
+
+// A measurement at 200 s holds the first third of the burn; the report, 2 % less, comes when it has ended.
+TEST_F(FiniteBurnNavigationTest, AReportIsUsedAfterAMeasurementWithinTheBurn) {
+  const orbit::CartesianState measured = accelerated(at_begin_, 1.0, 100.0);
+  EXPECT_EQ(inbox_.receive(packet_of({200 * kSecond}, measurement_of(measured))), Status::kOk);
+  update(240);
+  EXPECT_EQ(inbox_.receive(packet_of({250 * kSecond}, report(0.196))), Status::kOk);
+  update(420);
+  EXPECT_EQ(inbox_.counters().rejected_time, 0);
+  const auto after = orbit::propagate_j2(accelerated(measured, (0.98 - 1.0 / 3.0) / (2.0 / 3.0), 200.0), 20.0).value();
+  EXPECT_LT((navigation_.state().servicer.velocity_eci - after.velocity_eci).norm(), 1e-8);
+}
+
+// A thruster refuses a burn when it should begin, before the time tag of the report.
+TEST_F(FiniteBurnNavigationTest, ARefusalComesBeforeTheTimeOfTheBurn) {
+  update(60);
+  EXPECT_EQ(inbox_.receive(packet_of({250 * kSecond}, report(0.0))), Status::kOk);
+  update(120);
+  EXPECT_EQ(inbox_.counters().rejected_time, 0);
+  const auto expected = orbit::propagate_j2(servicer_state(), 120.0).value();
+  EXPECT_LT((navigation_.state().servicer.position_eci - expected.position_eci).norm(), 1e-6);
+}
+
+TEST_F(FiniteBurnNavigationTest, AnUnusableThrustIsRefused) {
+  for (const double acceleration : {-1e-3, 1e-9, 1e9}) {
+    thruster_configuration thruster = gnc::test::thruster();
+    thruster.thrust_acceleration = acceleration;
+    EXPECT_FALSE(is_valid(thruster)) << acceleration;
+  }
+  thruster_configuration thruster = gnc::test::thruster();
+  EXPECT_TRUE(is_valid(thruster));
+  thruster.pause_s = -1.0;
+  EXPECT_FALSE(is_valid(thruster));
 }
 
 // Hours without a measurement: the epoch of the estimator follows, so that a step's work stays bounded, and both orbits

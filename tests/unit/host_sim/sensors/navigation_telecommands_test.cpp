@@ -7,6 +7,7 @@
 
 #include <gmock/gmock.h>
 
+#include "host_sim/installation/burn_limits.h"
 #include "host_sim/installation/sensor_kinds.h"
 #include "host_sim/sensors/camera/camera_kind.h"
 #include "host_sim/sensors/camera/camera_rows.h"
@@ -118,6 +119,28 @@ TEST(NavigationTelecommands, NoneForTrueStates) {
   using enum Apid;
   EXPECT_THAT(sent_by(mission_of(kTrueStates)),
               ElementsAre(std::pair(kGncConfiguration, 0), std::pair(kWaypointTable, 0), std::pair(kModeCommand, 0)));
+}
+
+// Burns that last: navigation and guidance know the acceleration, with true states too.
+TEST(NavigationTelecommands, OfAThrusterStateItsAcceleration) {
+  using enum Apid;
+  const std::string thruster = "spacecraft.servicer.actuators.thruster.";
+  const auto with_thrust = [&](const std::string& sensors, const std::string& newtons) {
+    return mission_of(sensors, {thruster + "thrust_n=" + newtons, thruster + "specific_impulse_s=65",
+                                thruster + "propellant_kg=0.5", thruster + "rise_s=0.1", thruster + "fall_s=0.3"});
+  };
+  const mission::Mission mission = with_thrust(kTrueStates, "0.02");
+  EXPECT_THAT(sent_by(mission), UnorderedElementsAre(std::pair(kGncConfiguration, 0), std::pair(kWaypointTable, 0),
+                                                     std::pair(kModeCommand, 0), std::pair(kThrusterConfiguration, 0)));
+  const auto configuration = thruster_configuration_of(mission, mission.spacecraft[0]);
+  EXPECT_DOUBLE_EQ(configuration.thrust_acceleration, 0.02 / mission.spacecraft[0].surface.mass_kg);
+  EXPECT_DOUBLE_EQ(configuration.pause_s, 0.4);
+  EXPECT_EQ(thruster_configuration_of(mission_of(kPair), mission_of(kPair).spacecraft[0]).thrust_acceleration, 0.0);
+  const mission::Mission weak = with_thrust(kTrueStates, "1e-6");
+  EXPECT_THAT([&] { static_cast<void>(thruster_configuration_of(weak, weak.spacecraft[0])); },
+              testing::ThrowsMessage<std::runtime_error>(testing::MatchesRegex(
+                  "spacecraft \"servicer\": actuators.thruster.thrust_n: found 1e-06 N on .* kg, .* m/s\\^2; accepted: "
+                  "1e-07 to 1000 m/s\\^2")));
 }
 
 // Mean ROE times the servicer's own mean a: of a target 5 m behind along track, with sigmas that do not matter beside.
