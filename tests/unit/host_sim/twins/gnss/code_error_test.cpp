@@ -75,9 +75,10 @@ TEST(Semicodeless, ReceiverTracksBothPCodesAlike) {
       squares += std::pow(error_m / record.pseudorange_sigma_m, 2);
       ++count;
     }
-    for (const oem::RangeRecord& record : plain.observations())
-      if (record.signal == Signal::kGpsL1)
-        EXPECT_EQ((now.at({record.satellite, record.signal})).cn0_dbhz, record.cn0_dbhz);
+    for (const oem::RangeRecord& record : plain.observations()) {
+      if (record.signal != Signal::kGpsL1) continue;
+      EXPECT_EQ((now.at({record.satellite, record.signal})).cn0_dbhz, record.cn0_dbhz);
+    }
     for (const auto& [channel, record] : now) {
       const auto l2 = now.find({channel.first, Signal::kGpsL2});
       if (channel.second != Signal::kGpsL1 || l2 == now.end()) continue;
