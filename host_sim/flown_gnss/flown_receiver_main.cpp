@@ -151,9 +151,6 @@ int run(Options options) {
   options.settings.antenna_up_m = gnss.receiver.body_frame.antenna_in_body_m.norm();
   options.settings.period_s = gnss.receiver.output.period_s;
   options.settings.begin_s = 3600.0 * options.from_h;
-  // A device has its epochs between the steps of the flight software.
-  if (!options.log.empty() && gnss.source != sensors::kRinex && gnss.source != "digital")
-    options.settings.begin_s += gnss.line.log_offset_s;
   options.settings.duration_s = 3600.0 * options.hours;
   flown_gnss::GivenOrbit orbit(options.orbit, options.object, earth_orientation_of(mission));
   const double omitted = flown_gnss::omitted_gravity_psd(orbit.at(orbit.first()).position_eci.norm());
