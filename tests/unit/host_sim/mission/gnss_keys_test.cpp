@@ -221,7 +221,7 @@ TEST(BadGnssValue, WordsThatAreNone) {
       {sensor + ".source", "testbed", "the text \"testbed\"", "digital, recorded or rinex"},
       {sensor + ".gps_ephemeris", "rawephemb", "the text \"rawephemb\" (did you mean rawephem?)",
        "rawephem or gpsephem"},
-      {sensor + ".tracking.l1_code", "y", "the text \"y\"", "ca or p"},
+      {sensor + ".tracking.l1_code", "codeless", "the text \"codeless\"", "ca or p"},
       {sensor + ".start.mode", "lukewarm", "the text \"lukewarm\"", "cold, warm or hot"},
       {sensor + ".ionosphere", "1", "the integer 1", "true or false"},
       {sensor + ".tracking.thermal_noise", "2", "the integer 2", "true or false"},
