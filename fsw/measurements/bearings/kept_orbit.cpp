@@ -72,7 +72,7 @@ bool KeptOrbit::coast_to(GpsTime time, const filter::RelativeNavigationFilter& f
 bool KeptOrbit::apply(const filter::Impulse& impulse, const filter::FilterSettings& settings) {
   const auto before = orbit::qns_from_cartesian(pair_->servicer);
   if (!before.ok()) return false;
-  const double sigma = settings.burn_sigma + settings.burn_sigma_relative * math::sqrt(impulse.dv_eci.squaredNorm());
+  const double sigma = settings.burn_errors().of(impulse.dv_eci);
   const Matrix63 gamma = orbit::roe_control_matrix(before.value());
   covariance_ += (square(sigma) * gamma).lazyProduct(gamma.transpose());
   pair_->servicer.velocity_eci += impulse.dv_eci;
