@@ -32,11 +32,14 @@ class SearchRegion {
     return sigma < kLargest ? sigma : kLargest;
   }
   /// Direction in which the camera points meanwhile, off the prediction: rad, along R and N. Once the region exceeds
-  /// the field of view, its middle and eight directions about it in turn.
+  /// the field of view, its middle and eight directions about it, the middle before each of them: a target that was
+  /// hidden is where it is predicted.
   [[nodiscard]] Vector2 scan_offset() const {
     if (images_ < kScanFrom) return Vector2::Zero();
-    const std::size_t step = static_cast<std::size_t>((images_ - kScanFrom) / kScanImages) % kScan.size();
-    return kScanStep * Vector2(kScan[step][0], kScan[step][1]);
+    const std::size_t step = static_cast<std::size_t>((images_ - kScanFrom) / kScanImages);
+    if (step % 2 == 0) return Vector2::Zero();
+    const std::array<double, 2>& direction = kScan[step / 2 % kScan.size()];
+    return kScanStep * Vector2(direction[0], direction[1]);
   }
   /// The prediction with this error; as it is before the region grows.
   [[nodiscard]] Prediction widened(const Prediction& prediction, double mean_motion) const;
@@ -46,19 +49,12 @@ class SearchRegion {
   static constexpr double kFirst = 2e-4;
   static constexpr double kLargest = 0.05;   ///< the gate of 4.3 sigma then exceeds any field of view
   static constexpr int kScanFrom = 45;       ///< images
-  static constexpr int kScanImages = 10;     ///< of one direction: enough to establish a track
+  static constexpr int kScanImages = 7;      ///< of one direction: enough to establish a track
   static constexpr double kScanStep = 0.06;  ///< rad: less than the shorter side of the field
 
  private:
-  static constexpr std::array<std::array<double, 2>, 9> kScan{{{0.0, 0.0},
-                                                               {1.0, 0.0},
-                                                               {-1.0, 0.0},
-                                                               {0.0, 1.0},
-                                                               {0.0, -1.0},
-                                                               {1.0, 1.0},
-                                                               {-1.0, -1.0},
-                                                               {1.0, -1.0},
-                                                               {-1.0, 1.0}}};
+  static constexpr std::array<std::array<double, 2>, 8> kScan{
+      {{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}, {1.0, 1.0}, {-1.0, -1.0}, {1.0, -1.0}, {-1.0, 1.0}}};
   static constexpr int kImages = 100000;
   bool has_been_seen_ = false;
   int images_ = 0;  ///< without the target, though expected

@@ -1,5 +1,6 @@
 #include "fsw/vision/target_tracking/search_region.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -61,10 +62,17 @@ TEST(SearchRegion, ThenTheCameraScansAboutThePrediction) {
     region.note(true, false, false);
   }
   std::vector<Vector2> offsets;
-  for (int k = 0; k < 9 * SearchRegion::kScanImages; ++k) {
+  for (int k = 0; k < 16 * SearchRegion::kScanImages; ++k) {
     offsets.push_back(region.scan_offset());
     region.note(true, false, false);
   }
+  // Half of the time where the target is predicted, never away from it for longer than one direction takes.
+  int away = 0;
+  for (const Vector2& offset : offsets) {
+    away = offset.isZero() ? 0 : away + 1;
+    EXPECT_LE(away, SearchRegion::kScanImages);
+  }
+  EXPECT_EQ(std::ranges::count(offsets, Vector2(Vector2::Zero())), 8 * SearchRegion::kScanImages);
   constexpr double kDegree = 3.14159265 / 180.0;
   for (double angle = 0.0; angle < 6.28; angle += 0.1) {
     const Vector2 target = 4.1 * kDegree * Vector2(std::cos(angle), std::sin(angle));
