@@ -16,9 +16,8 @@ constexpr double square(double x) {
   return x * x;
 }
 
-/// Adds to the covariance of the ROE that of a white acceleration in RTN (power spectral density m^2/s^3, per axis)
-/// over the next `dt` s, or of changes of velocity at random times with a variance of psd * dt in all: by three-point
-/// Gauss quadrature in the interval. Gamma maps an impulse to the elements, and only the mean longitude drifts.
+}  // namespace
+
 void add_velocity_noise(const orbit::QnsElements& servicer, double psd, double dt, Matrix6& noise) {
   constexpr std::array<double, 3> kAtShare = {0.1127016653792583, 0.5, 0.8872983346207417};
   constexpr std::array<double, 3> kWeight = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
@@ -32,8 +31,6 @@ void add_velocity_noise(const orbit::QnsElements& servicer, double psd, double d
     noise += (weight * gamma).lazyProduct(gamma.transpose());
   }
 }
-
-}  // namespace
 
 void RelativeOrbit::configure(const RelativeOrbitSettings& settings) {
   if (!(settings.acceleration == settings_.acceleration)) noise_ = filter::AdaptiveNoise(settings.acceleration);
@@ -159,11 +156,10 @@ void RelativeOrbit::inflate_by_burn(Estimate& estimate, const orbit::CartesianSt
   noise_.interrupt();
 }
 
-Matrix6 covariance_rtn(const Estimate& estimate, const orbit::CartesianState& servicer) {
+Matrix6 covariance_rtn(const Vector6& roe, const Matrix6& covariance, const orbit::CartesianState& servicer) {
   constexpr double kDifferenceStep = 1e-7;
   const auto chief = orbit::qns_from_cartesian(servicer);
-  if (!chief.ok() || !is_active<Roe>(estimate)) return Matrix6::Zero();
-  const Vector6 roe = estimate.mean().head<6>();
+  if (!chief.ok()) return Matrix6::Zero();
   Matrix6 jacobian;
   for (int k = 0; k < 6; ++k) {
     const auto plus = target_from_roe(chief.value(), roe + kDifferenceStep * Vector6::Unit(k));
@@ -174,7 +170,12 @@ Matrix6 covariance_rtn(const Estimate& estimate, const orbit::CartesianState& se
     jacobian.col(k) << (a.position_rtn - b.position_rtn) / (2.0 * kDifferenceStep),
         (a.velocity_rtn - b.velocity_rtn) / (2.0 * kDifferenceStep);
   }
-  return jacobian.lazyProduct(estimate.head_covariance<6>()).lazyProduct(jacobian.transpose());
+  return jacobian.lazyProduct(covariance).lazyProduct(jacobian.transpose());
+}
+
+Matrix6 covariance_rtn(const Estimate& estimate, const orbit::CartesianState& servicer) {
+  if (!is_active<Roe>(estimate)) return Matrix6::Zero();
+  return covariance_rtn(estimate.mean().head<6>(), estimate.head_covariance<6>(), servicer);
 }
 
 }  // namespace vbar::fsw::filter

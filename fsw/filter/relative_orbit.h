@@ -76,8 +76,14 @@ class RelativeOrbit {
   filter::AdaptiveNoise noise_;
 };
 
-/// Covariance of the target's state in the servicer's RTN (velocity as seen in the rotating frame), m and m/s: by the
-/// Jacobian of the exact map, from finite differences. Zero if the orbit is invalid.
+/// Adds to the covariance of the ROE that of a white acceleration in RTN (power spectral density m^2/s^3, per axis)
+/// over the next `dt` s, or of changes of velocity at random times with a variance of psd * dt in all: by three-point
+/// Gauss quadrature in the interval. Gamma maps an impulse to the elements, and only the mean longitude drifts.
+void add_velocity_noise(const orbit::QnsElements& servicer, double psd, double dt, Matrix6& noise);
+
+/// Covariance of the target's state in the servicer's RTN (velocity as seen in the rotating frame), m and m/s, of ROE
+/// and their covariance: by the Jacobian of the exact map, from finite differences. Zero if the orbit is invalid.
+Matrix6 covariance_rtn(const Vector6& roe, const Matrix6& covariance, const orbit::CartesianState& servicer);
 Matrix6 covariance_rtn(const Estimate& estimate, const orbit::CartesianState& servicer);
 
 }  // namespace vbar::fsw::filter

@@ -61,8 +61,9 @@ FlownResult fly(GivenOrbit& orbit, twins::gnss::ReceiverBytes& receiver, const F
   OwnOrbit navigation(settings.filter, settings.range_errors, orbit.on_board(), antenna_body);
   FlownResult result(orbit.first(), settings.period_s);
   const fsw::Duration period = fsw::nearest_duration(settings.period_s);
-  const fsw::GpsTime end = std::min(orbit.last(), orbit.first() + fsw::nearest_duration(settings.duration_s));
-  for (fsw::GpsTime time = orbit.first(); time < end; time = time + period) {
+  const fsw::GpsTime first = orbit.first() + fsw::nearest_duration(settings.begin_s);
+  const fsw::GpsTime end = std::min(orbit.last(), first + fsw::nearest_duration(settings.duration_s));
+  for (fsw::GpsTime time = first; time < end; time = time + period) {
     const twins::gnss::BodyTruth body = orbit.at(time);
     const fsw::Matrix3 R_eci_body = body.q_body_eci.toRotationMatrix().transpose();
     const Vector3 antenna_eci = body.position_eci + R_eci_body * antenna_body;

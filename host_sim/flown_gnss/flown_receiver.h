@@ -15,6 +15,7 @@ struct FlownSettings {
   fsw::gnss::RangeErrors range_errors;
   double antenna_up_m = 0.0;  ///< from the centre of mass to the zenith
   double period_s = 10.0;     ///< between epochs
+  double begin_s = 0.0;       ///< of the first epoch, after the first state of the orbit
   double duration_s = 86400.0;
 };
 
@@ -28,7 +29,7 @@ struct FlownResult {
   std::size_t satellites = 0;  ///< sum over the epochs
 };
 
-/// Flies from the first state of the orbit on. Throws what receiver and orbit throw.
+/// Flies from `begin_s` on. Throws what receiver and orbit throw.
 [[nodiscard]] FlownResult fly(GivenOrbit& orbit, twins::gnss::ReceiverBytes& receiver, const FlownSettings& settings);
 
 }  // namespace vbar::flown_gnss

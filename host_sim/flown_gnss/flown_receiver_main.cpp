@@ -14,7 +14,9 @@
 #include "host_sim/files/error_lines.h"
 #include "host_sim/files/output_file.h"
 #include "host_sim/files/text_lines.h"
+#include "host_sim/flown_gnss/comparison.h"
 #include "host_sim/flown_gnss/flown_receiver.h"
+#include "host_sim/flown_gnss/logged_receiver.h"
 #include "host_sim/installation/sensor_kinds.h"
 #include "host_sim/mission/data_directory.h"
 #include "host_sim/sensors/gnss/gnss_kind.h"
@@ -30,10 +32,10 @@ using flown_gnss::FlownResult;
 using twins::gnss::RecordedReceiver;
 
 struct Options {
-  std::string mission, orbit, object, csv;
+  std::string mission, orbit, object, log, csv;
   std::vector<std::string> overrides;
-  bool is_twin = false, omits_gravity = false;
-  double hours = 24.0;
+  bool is_twin = false, is_beside_twin = false, omits_gravity = false;
+  double from_h = 0.0, hours = 24.0;
   flown_gnss::FlownSettings settings;
 };
 
@@ -119,6 +121,13 @@ void print_signals(const FlownResult& result) {
       static_cast<double>(result.satellites) / static_cast<double>(result.epochs), signals.steps());
 }
 
+void print_comparison(const FlownResult& flown, const FlownResult& twin) {
+  fmt::print("\n{:>60} {:>8} {:>8} {:>8} {:>8}\n", "Flown receiver and twin", "values", "flown", "twin", "ratio");
+  for (const flown_gnss::ComparedFigure& figure : compare(flown, twin))
+    fmt::print("{:>60} {:>8} {:>8.3f} {:>8.3f} {:>8.2f}\n", figure.name, figure.count, figure.flown, figure.twin,
+               figure.ratio());
+}
+
 void print_recording(const RecordedReceiver& receiver) {
   const twins::gnss::RecordingCounts& c = receiver.counts();
   const auto& file = receiver.file_counts();
@@ -141,20 +150,27 @@ int run(Options options) {
   const sensors::GnssSensor& gnss = *mission::find_settings<sensors::GnssSensor>(servicer);
   options.settings.antenna_up_m = gnss.receiver.body_frame.antenna_in_body_m.norm();
   options.settings.period_s = gnss.receiver.output.period_s;
+  options.settings.begin_s = 3600.0 * options.from_h;
   options.settings.duration_s = 3600.0 * options.hours;
   flown_gnss::GivenOrbit orbit(options.orbit, options.object, earth_orientation_of(mission));
   const double omitted = flown_gnss::omitted_gravity_psd(orbit.at(orbit.first()).position_eci.norm());
   if (options.omits_gravity) options.settings.filter.acceleration_psd = omitted;
+  const auto twin = [&] {
+    return make_twin(mission, servicer.name, gnss.receiver, options.settings.antenna_up_m, orbit.first());
+  };
   std::unique_ptr<twins::gnss::ReceiverBytes> receiver;
   const RecordedReceiver* recorded = nullptr;
   if (options.is_twin) {
-    receiver = make_twin(mission, servicer.name, gnss.receiver, options.settings.antenna_up_m, orbit.first());
+    receiver = twin();
+  } else if (!options.log.empty()) {
+    receiver = std::make_unique<flown_gnss::LoggedReceiver>(options.log, servicer.number,
+                                                            fsw::nearest_duration(options.settings.period_s));
   } else if (gnss.source == sensors::kRinex) {
     auto made = std::make_unique<RecordedReceiver>(gnss.recording, mission::data_directory());
     recorded = made.get();
     receiver = std::move(made);
   } else {
-    throw std::runtime_error(fmt::format("{}: found the source {} of sensors.gnss, expected rinex, or --twin",
+    throw std::runtime_error(fmt::format("{}: found the source {} of sensors.gnss, expected rinex, --twin or --log",
                                          mission.file.string(), gnss.source));
   }
   fmt::print(
@@ -165,6 +181,7 @@ int run(Options options) {
   print_errors(result);
   print_signals(result);
   if (recorded != nullptr) print_recording(*recorded);
+  if (options.is_beside_twin) print_comparison(result, fly(orbit, *twin(), options.settings));
   if (!options.csv.empty()) files::replace_text_file(options.csv, result.errors.csv());
   return 0;
 }
@@ -180,8 +197,12 @@ int main(int argc, char** argv) {
   app.add_option("--orbit", options.orbit, "published orbit: SP3, OEM")->required();
   app.add_option("--object", options.object, "name of the spacecraft in it");
   app.add_flag("--twin", options.is_twin, "the receiver is the twin with the settings of the mission");
+  app.add_option("--log", options.log, "the receiver is that of a run on this orbit: its packets.lcmlog");
+  app.add_flag("--beside-twin", options.is_beside_twin, "flies the twin as well and prints the figures of both");
   app.add_option("--set", options.overrides, "PATH=VALUE of a key of the mission");
-  app.add_option("--hours", options.hours, "from the first state of the orbit on")->check(CLI::Range(0.1, 1000.0));
+  app.add_option("--from-hours", options.from_h, "begin, after the first state of the orbit")
+      ->check(CLI::Range(0.0, 1000.0));
+  app.add_option("--hours", options.hours, "from that begin on")->check(CLI::Range(0.1, 1000.0));
   app.add_flag("--omitted-gravity", options.omits_gravity, "process noise: gravity beyond degree 20 at this altitude");
   app.add_option("--slow-error-sigma", options.settings.filter.slow_error_sigma_m,
                  "slow error of single points, each axis, m");

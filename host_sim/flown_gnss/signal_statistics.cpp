@@ -32,14 +32,28 @@ double Correlation::at(std::size_t lag) const {
   return products[lag] / static_cast<double>(pairs[lag]) / (products[0] / static_cast<double>(pairs[0]));
 }
 
-std::optional<double> Correlation::time() const {
-  constexpr double kLevel = 1.0 / std::numbers::e;
-  for (std::size_t lag = 1; lag < kLags; ++lag) {
-    if (pairs[lag] == 0) return std::nullopt;
-    const double before = at(lag - 1), now = at(lag);
-    if (now < kLevel) return static_cast<double>(lag - 1) + (before - kLevel) / (before - now);
+namespace {
+
+/// Lag, counted from `first` on, at which the correlation falls below 1/e of that at `first`.
+std::optional<double> decay(const Correlation& correlation, std::size_t first) {
+  const double level = correlation.at(first) / std::numbers::e;
+  if (!(level > 0.0)) return std::nullopt;
+  for (std::size_t lag = first + 1; lag < Correlation::kLags; ++lag) {
+    if (correlation.pairs[lag] == 0) return std::nullopt;
+    const double before = correlation.at(lag - 1), now = correlation.at(lag);
+    if (now < level) return static_cast<double>(lag - 1 - first) + (before - level) / (before - now);
   }
   return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<double> Correlation::time() const {
+  return decay(*this, 0);
+}
+
+std::optional<double> Correlation::time_beside_white() const {
+  return decay(*this, 1);
 }
 
 void SignalStatistics::add(const fsw::gnss::ObservationEpoch& epoch,
@@ -77,8 +91,10 @@ void add_series(const std::vector<double>& elevations, std::vector<double> value
   for (std::size_t k = 0; k < values.size(); ++k) {
     noise.bins[bin_of(elevations[k])].add(values[k]);
     for (std::size_t lag = 0; lag < Correlation::kLags && lag <= k; ++lag) {
-      noise.correlation.products[lag] += values[k] * values[k - lag];
-      ++noise.correlation.pairs[lag];
+      const double product = values[k] * values[k - lag];
+      noise.correlation.add(lag, product);
+      if (std::min(elevations[k], elevations[k - lag]) > SignalNoise::kHighElevation)
+        noise.high_correlation.add(lag, product);
     }
   }
 }

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <functional>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,15 +41,25 @@ struct Correlation {
   static constexpr std::size_t kLags = 61;
   std::array<double, kLags> products{};
   std::array<std::size_t, kLags> pairs{};
+  void add(std::size_t lag, double product) {
+    products[lag] += product;
+    ++pairs[lag];
+  }
   [[nodiscard]] double at(std::size_t lag) const;
   /// Lag at which it falls below 1/e, in epochs, interpolated; none within kLags.
   [[nodiscard]] std::optional<double> time() const;
+  /// The same of what is not white noise: lag, counted from 1 on, within which the correlation falls to 1/e of that at
+  /// 1. A first-order Gauss-Markov process with white noise beside it has that of the process.
+  [[nodiscard]] std::optional<double> time_beside_white() const;
 };
 
 /// A quantity of each satellite: its noise by elevation and its correlation in time.
 struct SignalNoise {
+  /// Elevation, rad, above which the white noise of a receiver hides less of what is correlated: 30 deg.
+  static constexpr double kHighElevation = std::numbers::pi / 6.0;
   ElevationBins bins;
   Correlation correlation;
+  Correlation high_correlation;  ///< of values above kHighElevation
 };
 
 class SignalStatistics {
@@ -68,6 +79,7 @@ class SignalStatistics {
   /// Third differences in time of L1 less L2 carrier over sqrt(20): the white noise of both, m, where the ionosphere is
   /// smooth over 30 s.
   [[nodiscard]] const ElevationBins& carrier() const { return carrier_; }
+  [[nodiscard]] double interval_s() const { return interval_s_; }
   /// Number of times that L1 less L2 carrier steps by more than 5 cm though both report continuous lock: cycle slips,
   /// or an ionosphere that is not smooth.
   [[nodiscard]] std::size_t steps() const { return steps_; }

@@ -49,6 +49,7 @@ void compare_quantities(const Json& earlier, const Json& later, std::vector<Wors
 void compare_shares(const Json& earlier, const Json& later, std::vector<Worsening>& all) {
   if (earlier["cases_per_seed"] != 1 || later["cases_per_seed"] != 1) return;
   const auto count = [](const Json& row, const char* key) { return row["achieved"][key].get<std::size_t>(); };
+  if (count(earlier, "of") == 0 || count(later, "of") == 0) return;
   const auto share = [&](const Json& row) {
     return static_cast<double>(count(row, "count")) / static_cast<double>(count(row, "of"));
   };

@@ -67,6 +67,7 @@ std::string flown_text(const Json& row) {
 
 std::string achieved_text(const Json& row) {
   const Json& share = row["achieved"];
+  if (share["of"] == 0) return "no verdict";
   return fmt::format("{} of {}, at least {:.1f} %", share["count"].dump(), share["of"].dump(),
                      100.0 * share["lower"].get<double>());
 }
@@ -93,9 +94,11 @@ std::string section_of(const Json& row) {
   const std::string name = row["name"].get<std::string>();
   std::string text = fmt::format("\n## {}\n\n`missions/verification/{}.toml`: ", row["title"].get<std::string>(), name);
   if (!is_flown(row)) return text + fmt::format("not flown ({} seeds asked).\n", row["seeds_asked"].dump());
-  text += fmt::format("{}, {:.3g} core-hours; achieved: {} at {:.0f} % confidence.\n\n", flown_text(row),
-                      row["core_hours"].get<double>(), achieved_text(row),
-                      100.0 * row["achieved"]["confidence"].get<double>());
+  text += fmt::format("{}, {:.3g} core-hours; achieved: {}", flown_text(row), row["core_hours"].get<double>(),
+                      achieved_text(row));
+  text += row["achieved"]["of"] == 0
+              ? ", for want of waypoints.\n\n"
+              : fmt::format(" at {:.0f} % confidence.\n\n", 100.0 * row["achieved"]["confidence"].get<double>());
   return text + table_of(row) + commands_of(row);
 }
 

@@ -195,17 +195,24 @@ bool is_achieved(const campaign_report::Case& one) {
   return one.is_complete() && one.verdict.starts_with("achieved");
 }
 
+/// A flight to its end without waypoints, safety or limits: there is nothing to achieve.
+bool is_without_verdict(const campaign_report::Case& one) {
+  return one.is_complete() && one.verdict == "not judged";
+}
+
 Json share_of(const Campaign& campaign) {
-  const auto achieved = std::ranges::count_if(campaign.cases, [](const auto& one) { return is_achieved(one); });
+  const auto achieved = std::ranges::count_if(campaign.cases, is_achieved);
+  const auto judged =
+      campaign.cases.size() - static_cast<std::size_t>(std::ranges::count_if(campaign.cases, is_without_verdict));
   const campaign_report::PassRate rate =
-      campaign_report::pass_rate(static_cast<std::size_t>(achieved), campaign.cases.size(), kConfidence);
-  return {{"count", achieved}, {"of", campaign.cases.size()}, {"confidence", kConfidence}, {"lower", rate.lower}};
+      campaign_report::pass_rate(static_cast<std::size_t>(achieved), judged, kConfidence);
+  return {{"count", achieved}, {"of", judged}, {"confidence", kConfidence}, {"lower", rate.lower}};
 }
 
 Json failures_of(const Campaign& campaign, const campaign::Standing& standing) {
   Json all = Json::array();
   for (const campaign_report::Case& one : campaign.cases)
-    if (!one.has_passed() || (!is_achieved(one) && one.verdict != "not judged"))
+    if (!one.has_passed() || (!is_achieved(one) && !is_without_verdict(one)))
       all.push_back({{"command", command_of(standing.plan, standing.cases[one.number])},
                      {"state", campaign_report::name_of(one.state)},
                      {"verdict", one.verdict},

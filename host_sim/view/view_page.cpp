@@ -108,16 +108,32 @@ void put(std::string& page, std::string_view mark, std::string_view text) {
   page.replace(place, mark.size(), text);
 }
 
+/// Takes the data of the tables out of the runs and returns elements of them, data-RUN-TABLE: a browser keeps several
+/// copies of an element while it reads it, and gives the memory of each table back when it has read it.
+std::string table_elements(json& runs) {
+  std::string text;
+  for (std::size_t run = 0; run < runs.size(); ++run) {
+    json& tables = runs[run]["tables"];
+    for (std::size_t k = 0; k < tables.size(); ++k) {
+      text += fmt::format("<script type=\"text/plain\" id=\"data-{}-{}\">{}</script>\n", run, k,
+                          tables[k]["data"].get_ref<const std::string&>());
+      tables[k].erase("data");
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string_view page_template() {
   return {vbar_view_page_begin, static_cast<std::size_t>(vbar_view_page_end - vbar_view_page_begin)};
 }
 
-std::string filled_page(std::string_view title, const json& runs) {
+std::string filled_page(std::string_view title, json runs) {
   if (page_template().empty()) throw std::runtime_error(kHowToGetPage);
   std::string page(page_template());
   put(page, "@TITLE@", report::escaped(title));
+  put(page, "@TABLES@", table_elements(runs));
   put(page, "@RUNS@", script_text(runs));
   return page;
 }
@@ -129,7 +145,7 @@ std::string view_page(std::span<const ViewedRun> runs, const std::filesystem::pa
     names += (names.empty() ? "" : " | ") + run.name;
     data.push_back(json_of(run, data_directory));
   }
-  return filled_page(names, data);
+  return filled_page(names, std::move(data));
 }
 
 void write_view(const std::filesystem::path& file, std::span<const ViewedRun> runs,

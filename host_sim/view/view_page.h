@@ -19,7 +19,7 @@ namespace vbar::view {
 [[nodiscard]] std::string_view page_template();
 
 /// Returns the page with a title and the JSON of its runs. Throws std::runtime_error without page_template().
-[[nodiscard]] std::string filled_page(std::string_view title, const nlohmann::json& runs);
+[[nodiscard]] std::string filled_page(std::string_view title, nlohmann::json runs);
 
 /// How a build comes to contain the page, for messages.
 inline constexpr const char* kHowToGetPage =

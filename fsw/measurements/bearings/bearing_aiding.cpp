@@ -161,8 +161,24 @@ void BearingAiding::deactivate_blocks(filter::RelativeNavigationFilter& filter) 
   deactivate.template operator()<BearingBias>();
 }
 
+const KeptOrbit& BearingAiding::kept_at_epoch(const filter::RelativeNavigationFilter& filter) {
+  kept_.advance(filter);
+  return kept_;
+}
+
+void BearingAiding::return_to_kept(GpsTime now, filter::RelativeNavigationFilter& filter) {
+  filter.initialize_relative(kept_.roe(), kept_.covariance(), SolutionStatus::kEstimated);
+  deactivate_blocks(filter);
+  close_window();
+  scatter_ = 1.0;
+  kept_.forget();
+  ++counters_.returns;
+  aid_.go_to(AidState::kSuspended, now);
+}
+
 void BearingAiding::stop(GpsTime now, filter::RelativeNavigationFilter& filter) {
   if (aid_.is_on()) deactivate_blocks(filter);
+  kept_.forget();
   close_window();
   aid_.go_to(AidState::kOff, now);
 }
@@ -443,6 +459,7 @@ void BearingAiding::weigh_window(GpsTime time, const Vector3& sun_eci, filter::R
   if (verdict.ok() && verdict.value().log_odds > kDecisive) {
     const auto revised = revised_orbit(batch_, estimated, verdict.value());
     if (revised.ok()) {
+      kept_.keep(filter);
       filter.initialize_relative(revised.value().roe, revised.value().covariance, SolutionStatus::kEstimated);
       ++counters_.revisions;
       scatter_ = std::clamp(verdict.value().best_scatter, 1.0, kMaxScatter);
@@ -459,6 +476,7 @@ void BearingAiding::weigh_window(GpsTime time, const Vector3& sun_eci, filter::R
 /// No hypothesis explains the bearings: another batch begins, with the orbit as prior.
 void BearingAiding::restart_batch(GpsTime time, filter::RelativeNavigationFilter& filter) {
   ++counters_.restarts;
+  kept_.keep(filter);
   filter.mark_inconsistent();
   deactivate_blocks(filter);
   close_window();

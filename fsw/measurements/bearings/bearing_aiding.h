@@ -8,6 +8,7 @@
 #include "fsw/filter/relative_navigation_filter.h"
 #include "fsw/measurements/aid.h"
 #include "fsw/measurements/bearings/bearing_batch.h"
+#include "fsw/measurements/bearings/kept_orbit.h"
 #include "fsw/measurements/bearings/orbit_hypotheses.h"
 #include "fsw/packets/messages.h"
 #include "fsw/vision/target_tracking/bearing.h"
@@ -59,6 +60,7 @@ struct BearingCounters {
   std::int32_t batches_failed = 0;
   std::int32_t revisions = 0;  ///< of the orbit, after bearings that an unknown burn explains and scatter does not
   std::int32_t restarts = 0;   ///< of the batch, after the orbit had been initialised
+  std::int32_t returns = 0;    ///< to the orbit before a revision or restart, which was that of another satellite
 };
 
 class BearingAiding {
@@ -81,6 +83,11 @@ class BearingAiding {
   /// are scatter of the bearings, which get more of it; of others the orbit lags, whose covariance grows, where the
   /// last bearing determines it: across the line of sight and in what is correlated with it.
   void explain_excess(double mean_nis, filter::RelativeNavigationFilter& filter);
+
+  /// The orbit before the first bearings that contradicted it and led to another one, at the epoch of the filter.
+  const KeptOrbit& kept_at_epoch(const filter::RelativeNavigationFilter& filter);
+  /// Returns to that orbit: what has been observed since is another satellite.
+  void return_to_kept(GpsTime now, filter::RelativeNavigationFilter& filter);
 
   /// Deactivates the own blocks; the orbit stays.
   void stop(GpsTime now, filter::RelativeNavigationFilter& filter);
@@ -121,6 +128,7 @@ class BearingAiding {
   BearingSettings settings_;
   Aid aid_;
   measurements::BearingBatch batch_;
+  KeptOrbit kept_;
   GpsTime burns_until_;  ///< impulses of the filter before this are in the batch
   GpsTime last_accepted_;
   GpsTime last_processed_;

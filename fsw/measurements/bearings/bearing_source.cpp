@@ -67,6 +67,9 @@ constexpr double kLastingShare = 0.625;
 // Earth, and as uncertain as it is large.
 constexpr double kEarthlightShare = 0.2;
 
+// Images in one direction, enough to establish a track there.
+constexpr int kImagesInTurn = 10;
+
 constexpr double kSpeedOfLight = 299792458.0;  // m/s
 
 // The target is visible when it is illuminated. Near an edge of the shadow it may or may not be.
@@ -138,6 +141,10 @@ void BearingSource::process_record(const Record& record, Context& context, filte
   if (sighting.status == target_tracking::SightingStatus::kNoStars) ++images_without_stars_;
   std::optional<target_tracking::BearingMeasurement> bearing;
   if (sighting.status == target_tracking::SightingStatus::kBearing) bearing = sighting.bearing;
+  if (sighting.is_as_kept) {
+    aiding_.return_to_kept(record.time, filter);
+    search_ = {};
+  }
   edit_status_ = aiding_.process(record.time, bearing, sun_eci, filter);
   note_search(priors, filter);
   a_roe_m_ = filter.a_roe_m();
@@ -160,6 +167,10 @@ void BearingSource::note_search(const target_tracking::ImagePriors& priors,
 Pointing BearingSource::searched(const Pointing& to_target) const {
   const Vector2 offset = search_.scan_offset();
   Pointing pointing = to_target;
+  if (kept_direction_rtn_ && (images_with_kept_ / kImagesInTurn) % 2 == 1) {
+    pointing.boresight_rtn = *kept_direction_rtn_;
+    return pointing;
+  }
   if (offset.squaredNorm() == 0.0) return pointing;
   pointing.boresight_rtn = (pointing.boresight_rtn + Vector3(offset.x(), 0.0, offset.y())).normalized();
   return pointing;
@@ -179,14 +190,18 @@ target_tracking::ImagePriors BearingSource::priors_of(const Context& context, co
     R_body_eci = R_body_eci_of(*pointing, time, priors.servicer);
     priors.R_camera_eci = tracking_.settings().R_camera_body * R_body_eci;
   }
+  Vector3 camera_rtn = Vector3::Zero();
+  if (pointing) {
+    const Vector3 camera_eci = R_body_eci.transpose() * tracking_.settings().position_body_m;
+    camera_rtn = orbit::R_rtn_eci(priors.servicer) * camera_eci;
+  }
+  const auto prediction_of = [&](const orbit::CartesianState& target, const Matrix6& covariance_rtn) {
+    orbit::RelativeState relative = orbit::relative_state_rtn(priors.servicer, target);
+    relative.position_rtn -= camera_rtn;
+    return target_tracking::prediction_of(relative, covariance_rtn);
+  };
   if (const Result<orbit::CartesianState> target = filter.target(); target.ok()) {
-    orbit::RelativeState relative = orbit::relative_state_rtn(priors.servicer, target.value());
-    if (pointing) {
-      const Vector3 camera_eci = R_body_eci.transpose() * tracking_.settings().position_body_m;
-      relative.position_rtn -= orbit::R_rtn_eci(priors.servicer) * camera_eci;
-    }
-    const auto prediction =
-        target_tracking::prediction_of(relative, filter::covariance_rtn(filter.estimate(), priors.servicer));
+    const auto prediction = prediction_of(target.value(), filter::covariance_rtn(filter.estimate(), priors.servicer));
     if (prediction.ok()) {
       const double radius = math::sqrt(priors.servicer.position_eci.squaredNorm());
       const double rate = math::sqrt(priors.servicer.velocity_eci.squaredNorm()) / radius;
@@ -194,6 +209,15 @@ target_tracking::ImagePriors BearingSource::priors_of(const Context& context, co
     }
     priors.is_search = search_.is_widened();
     priors.detection_probability = detection_probability(target.value(), sun_eci);
+  }
+  const KeptOrbit& kept = aiding_.kept_at_epoch(filter);
+  kept_direction_rtn_.reset();
+  images_with_kept_ = kept.is_kept() ? images_with_kept_ + 1 : 0;
+  if (const Result<orbit::CartesianState> target = kept.target(priors.servicer); target.ok()) {
+    kept_direction_rtn_ = orbit::relative_state_rtn(priors.servicer, target.value()).position_rtn.normalized();
+    const auto prediction =
+        prediction_of(target.value(), filter::covariance_rtn(kept.roe(), kept.covariance(), priors.servicer));
+    if (prediction.ok()) priors.kept = prediction.value();
   }
   std::size_t count = 0;
   for (const filter::Impulse& impulse : filter.impulses()) {

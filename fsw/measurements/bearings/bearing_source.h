@@ -50,7 +50,8 @@ class BearingSource {
     aiding_.stop(now, filter);
     search_ = {};
   }
-  /// The pointing to the target, off it where a lost target is searched.
+  /// The pointing to the target, off it where a lost target is searched; in turn with that to the target on the orbit
+  /// that the present one has replaced.
   [[nodiscard]] Pointing searched(const Pointing& to_target) const;
   /// Attitude by the image of the step, if enough of its stars were identified.
   [[nodiscard]] std::optional<StarAttitude> star_attitude() const;
@@ -70,6 +71,8 @@ class BearingSource {
   BearingAiding aiding_;
   target_tracking::SearchRegion search_;
   std::array<target_tracking::OwnBurn, filter::RelativeNavigationFilter::kMaxImpulses> burns_since_image_{};
+  std::optional<Vector3> kept_direction_rtn_;  ///< to the target on the orbit that was replaced
+  int images_with_kept_ = 0;
   std::optional<GpsTime> last_image_;
   bool has_image_ = false;
   BearingEditStatus edit_status_ = BearingEditStatus::kNone;

@@ -14,6 +14,9 @@ constexpr double kMagnitude = 1.0857362047581296;
 
 constexpr double kMinFlux_dn = 1.0;
 
+// Apparent radius from which on errors of single pixels and the point-spread function do not matter to an extent.
+constexpr double kResolved_px = 1.5;
+
 /// The cone about the centre of an image that includes its corners.
 stars::Field field_of(const CameraSettings& settings) {
   const imaging::ImageFrame& frame = settings.frame;
@@ -63,6 +66,7 @@ void AnglesOnlyTracking::configure(const CameraSettings& settings) {
   field_ = field_of(settings);
   target_tracking::TrackerSettings tracker;
   const double per_px = 1.0 / settings.model.focal_length_px.x();
+  tracker.resolved_rad = kResolved_px * per_px;
   tracker.field_sr = settings.frame.width * settings.frame.height * per_px * per_px;
   tracker_ = target_tracking::TargetTracker(tracker);
   sighting_ = {};
@@ -163,6 +167,7 @@ std::size_t AnglesOnlyTracking::collect_candidates(const ImagePriors& priors) {
     // The centroid of a resolved body varies within the body.
     const double size = apparent_radius_px(objects[k], settings_.detector.point_spread_sigma_px) * per_px;
     candidate.sigma = math::hypot(math::hypot(seen_[k].sigma_rad, sighting_.attitude_sigma), size);
+    candidate.apparent_radius = size;
     candidate.object = objects[k];
     object_of_candidate_[count++] = k;
   }
@@ -177,11 +182,13 @@ SightingStatus AnglesOnlyTracking::find_target(const TakenImage& image, const Im
   input.candidates = std::span(candidates_).first(candidates);
   input.burns = priors.burns;
   input.prediction = priors.target;
+  input.kept = priors.kept;
   input.is_search = priors.is_search;
   input.detection_probability = priors.detection_probability;
   const Result<target_tracking::TrackerOutput> tracked = tracker_.step(input);
   if (!tracked.ok()) return SightingStatus::kNoTarget;
   sighting_.hypotheses = tracked.value().hypotheses;
+  sighting_.is_as_kept = tracked.value().is_as_kept;
   const auto objects = detector_.objects();
   for (std::size_t k = 0; k < candidates; ++k) {
     const std::size_t object = object_of_candidate_[k];

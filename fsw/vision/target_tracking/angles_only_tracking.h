@@ -60,6 +60,7 @@ struct Sighting {
   double attitude_sigma = 0.0;                 ///< 1 sigma of the boresight's direction, rad
   int hypotheses = 0;
   int target = -1;                              ///< index of the target's object
+  bool is_as_kept = false;                      ///< the target moves as the replaced orbit predicts
   target_tracking::BearingMeasurement bearing;  ///< only with kBearing
 };
 
@@ -82,6 +83,7 @@ struct ImagePriors {
   Vector3 velocity_over_c_eci = Vector3::Zero();      ///< velocity of the camera, barycentric, for aberration
   std::optional<Matrix3> R_camera_eci;                ///< attitude as commanded
   std::optional<target_tracking::Prediction> target;  ///< motion predicted by navigation, as seen by the camera
+  std::optional<target_tracking::Prediction> kept;    ///< the same of the orbit that the present one has replaced
   bool is_search = false;                             ///< the prediction was widened: the target was lost
   double detection_probability = 0.95;                ///< that of the target: smaller if it may be in eclipse
   std::span<const target_tracking::OwnBurn> burns;    ///< since the last image, in order of time

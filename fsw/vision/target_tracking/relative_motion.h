@@ -27,6 +27,7 @@ inline constexpr std::size_t kMaxCandidates = imaging::kMaxObjects;
 struct Candidate {
   Vector3 direction_rtn = Vector3::UnitX();  ///< unit vector from the servicer, in its RTN at the image's time
   double sigma = 0.0;                        ///< rad, 1 sigma of the direction, each axis: centroid and attitude
+  double apparent_radius = 0.0;              ///< rad, of its light, without the point-spread function
   imaging::DetectedObject object;            ///< for brightness and for learning hot pixels
 };
 

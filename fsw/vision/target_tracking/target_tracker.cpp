@@ -40,6 +40,7 @@ Result<TrackerOutput> TargetTracker::step(const TrackerInput& input) {
   work_.view = view.value();
   work_.has_prediction = input.prediction.has_value();
   work_.is_search = input.is_search && work_.has_prediction;
+  work_.kept_prediction = work_.has_prediction ? input.kept : std::nullopt;
   work_.prediction = work_.has_prediction ? *input.prediction : Prediction{};
   const double per_m = -0.5 / work_.view.semi_major_axis;
   work_.bend = per_m * work_.prediction.along_track_m;
@@ -57,6 +58,7 @@ Result<TrackerOutput> TargetTracker::step(const TrackerInput& input) {
   compare_with_prediction();
   if (probability > kExpected) ++images_watched_;
   choose_target();
+  return_to_kept();
   has_image_ = true;
   time_ = input.time;
   return report();
@@ -68,7 +70,8 @@ Status TargetTracker::check(const TrackerInput& input) const {
   if (!(input.detection_probability >= 0.0 && input.detection_probability <= 1.0)) return Status::kOutOfRange;
   for (const Candidate& candidate : input.candidates) {
     const imaging::DetectedObject& object = candidate.object;
-    if (!math::is_finite(candidate.direction_rtn.sum() + candidate.sigma + object.flux_dn + object.centroid_px.sum())) {
+    if (!math::is_finite(candidate.direction_rtn.sum() + candidate.sigma + candidate.apparent_radius + object.flux_dn +
+                         object.centroid_px.sum())) {
       return Status::kNotFinite;
     }
     if (!is_direction(candidate.direction_rtn) || !(candidate.sigma > 0.0)) return Status::kOutOfRange;
@@ -80,8 +83,9 @@ Status TargetTracker::check(const TrackerInput& input) const {
     if (burn.time < last || burn.time > input.time) return Status::kInvalidArgument;
     last = burn.time;
   }
-  if (input.prediction) {
-    const Prediction& p = *input.prediction;
+  for (const std::optional<Prediction>* prediction : {&input.prediction, &input.kept}) {
+    if (!prediction->has_value()) continue;
+    const Prediction& p = **prediction;
     if (!math::is_finite(p.slopes.sum() + p.covariance.sum() + p.along_track_m + p.along_track_rate +
                          p.along_track_sigma_fraction)) {
       return Status::kNotFinite;
@@ -115,11 +119,16 @@ void TargetTracker::select_eligible(const TrackerInput& input) {
       const double square = s(1, 1) * offset.x() * offset.x() - 2.0 * s(0, 1) * offset.x() * offset.y() +
                             s(0, 0) * offset.y() * offset.y();
       is_in_gate = square <= settings_.prediction_gate * determinant;
-      if (!is_in_gate && !(offset.squaredNorm() < settings_.surroundings * settings_.surroundings)) continue;
+      const double around = settings_.surroundings * settings_.surroundings;
+      const bool is_near_kept =
+          work_.kept_prediction &&
+          (measurement.value().slopes - work_.kept_prediction->slopes.head<2>()).squaredNorm() < around;
+      if (!is_in_gate && !is_near_kept && !(offset.squaredNorm() < around)) continue;
     }
     Eligible& eligible = work_.eligible[work_.eligible_count++];
     eligible.measurement = measurement.value();
     eligible.sigma = candidate.sigma;
+    eligible.apparent_radius = candidate.apparent_radius;
     eligible.is_in_gate = is_in_gate;
     eligible.log_flux = math::log(candidate.object.flux_dn > 1.0 ? candidate.object.flux_dn : 1.0);
     eligible.handicap =
@@ -229,7 +238,9 @@ Hypothesis TargetTracker::child_of(const Branch& branch) {
   update(child.motion, innovation);
   child.history[0] = candidate.index;
   child.misfit += kMisfitGain * (0.5 * innovation.distance - child.misfit);
-  child.log_flux += (is_birth ? 1.0 : kFluxGain) * (candidate.log_flux - child.log_flux);
+  const double gain = is_birth ? 1.0 : kFluxGain;
+  child.log_flux += gain * (candidate.log_flux - child.log_flux);
+  child.apparent_radius += gain * (candidate.apparent_radius - child.apparent_radius);
   child.sigma = candidate.sigma;
   child.images_since_hit = 0;
   ++child.hits;

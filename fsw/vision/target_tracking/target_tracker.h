@@ -8,7 +8,8 @@
 // gate), and compared by the likelihood ratio of their relative orbits: an orbit as predicted against any.
 //
 // A target that was lost is searched in a wide region (search_region.h), where motion alone tells less. Its history
-// then counts as well: the brightness that it had, reduced to one distance, and tracks that were seen beside it.
+// then counts as well: brightness and apparent size that it had, reduced to one distance, and tracks that were seen
+// beside it.
 //
 // An object belongs to one satellite. Detections that a better track shares do not establish a track.
 
@@ -38,6 +39,8 @@ struct TrackerSettings {
   double certainty = 0.99;         ///< required certainty of the association in an image
   double magnitude_sigma = 1.5;    ///< 1-sigma variation of a tumbling target from image to image
   double history_sigma = 1.0;      ///< magnitudes, 1-sigma variation of the target from one hour to another
+  double size_sigma = 0.4;         ///< 1-sigma variation of the logarithm of the lit extent: faces of a box, phase
+  double resolved_rad = 2e-4;      ///< apparent radius from which on an extent is more than errors of pixels
   double beside_loss = 10.0;       ///< log-likelihood of being the target, of a track that was seen beside it
   int beside_images = 30;          ///< number of images that establish that
   double least_identity = -5.0;    ///< log-likelihood with which a track that is searched may be the target: satellites
@@ -57,6 +60,7 @@ struct TrackerInput {
   std::span<const Candidate> candidates;  ///< at most kMaxCandidates
   std::span<const OwnBurn> burns;         ///< since the last image, in order of time
   std::optional<Prediction> prediction;
+  std::optional<Prediction> kept;      ///< of the orbit that the present one has replaced, if that may be wrong
   bool is_search = false;              ///< the target was lost: objects are compared with its history too
   double detection_probability = 0.9;  ///< that the target, if in the field, is a candidate: 0 in eclipse
 };
@@ -75,6 +79,7 @@ struct TrackerOutput {
   int hypotheses = 0;
   int tracks = 0;
   int hot_pixels = 0;            ///< number of known hot pixels
+  bool is_as_kept = false;       ///< the target moves as the replaced orbit predicts: that one was right
   double score_margin = 0.0;     ///< excess of the best track's identity over the next one's; large if alone
   double residual_sigmas = 0.0;  ///< root mean square of the target's recent residuals over their standard deviation
 };
@@ -102,6 +107,9 @@ class TargetTracker {
   void grow();
   void share_objects();
   void compare_with_prediction();
+  [[nodiscard]] double evidence_for(const Prediction& prediction, const SlopeState& state, const Matrix5& common,
+                                    double log_determinant_of_any, double& distance) const;
+  void return_to_kept();
   [[nodiscard]] bool is_another(const Hypothesis& hypothesis) const {
     return hypothesis.images_beside >= settings_.beside_images;
   }
@@ -109,6 +117,7 @@ class TargetTracker {
   [[nodiscard]] double evidence_for_known(const Hypothesis& hypothesis, const SlopeState& state, const Matrix5& unit,
                                           double log_determinant_of_any) const;
   [[nodiscard]] double history_loss(const Hypothesis& hypothesis) const;
+  [[nodiscard]] double extent_loss(const Hypothesis& hypothesis, double distance) const;
   void note_history(const Hypothesis& target);
   void prune();
   void merge_accounts();
@@ -119,8 +128,9 @@ class TargetTracker {
   struct Eligible {
     SlopeMeasurement measurement;
     double log_flux = 0.0;
-    double sigma = 0.0;     ///< rad
-    double handicap = 0.0;  ///< log-likelihood
+    double apparent_radius = 0.0;  ///< rad
+    double sigma = 0.0;            ///< rad
+    double handicap = 0.0;         ///< log-likelihood
     std::int16_t index = 0;
     bool is_in_gate = true;  ///< may be the target
   };
@@ -146,8 +156,11 @@ class TargetTracker {
   std::uint32_t target_track_ = 0;  ///< images in which the target was expected, since the tracks were reset
   int images_watched_ = 0;          ///< in which the target was expected, since the last reset of the tracks
   int deposing_images_ = 0;
+  int returning_images_ = 0;  ///< in which a track moved as the replaced orbit predicts, and the target's did not
+  bool is_as_kept_ = false;
   bool ambiguous_ = false;
   std::optional<double> target_log_power_;  ///< flux of the target times its squared distance, running mean
+  std::optional<double> target_extent_m_;   ///< apparent radius of the target times its distance, running mean
   double score_margin_ = 0.0;
 
   std::size_t count_ = 0;
@@ -158,6 +171,7 @@ class TargetTracker {
     ServicerView view;
     Prediction prediction;
     bool has_prediction = false;
+    std::optional<Prediction> kept_prediction;
     bool is_search = false;
     bool is_prediction_narrow = false;  ///< few other objects are to be expected in its gate
     double bend = 0.0;
@@ -169,7 +183,6 @@ class TargetTracker {
     std::array<Eligible, kMaxCandidates> eligible{};
     std::size_t branch_count = 0;
     std::array<Branch, kMaxBranches> branches{};
-    std::size_t kept = 0;
     std::array<bool, kMaxHypotheses> erased{};
     std::array<bool, kMaxHypotheses> shared{};
     std::array<Hypothesis, kMaxHypotheses> children{};

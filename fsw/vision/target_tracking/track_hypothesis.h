@@ -24,9 +24,12 @@ struct Hypothesis {
   double score = 0.0;                 ///< log-likelihood ratio against false detections only (Sittler 1964)
   double misfit = 1.0;                ///< running mean of the normalised innovation squared, per degree of freedom
   double log_flux = 0.0;              ///< running mean
+  double apparent_radius = 0.0;       ///< rad, running mean
   double sigma = 0.0;                 ///< 1 sigma of its last object, rad
   double distance = 0.0;              ///< from the prediction (chi-square, 5 degrees of freedom)
   double identity = 0.0;              ///< log-likelihood ratio of being the target against being another satellite
+  double kept_distance = 0.0;         ///< from the prediction of the orbit that was replaced, as `distance`
+  double kept_identity = 0.0;         ///< log-likelihood ratio of moving as it predicts against any motion
   std::int32_t hits = 0;              ///< number of objects, in all
   std::int32_t hits_since_gap = 0;    ///< number of objects since its last long gap
   std::int32_t images_since_hit = 0;  ///< number of images, in which it was expected, since its last object

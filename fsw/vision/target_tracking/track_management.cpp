@@ -13,6 +13,7 @@ constexpr double kAlone = 99.0;
 constexpr int kRivalHits = 3;
 constexpr int kOwnObjects = 2;
 constexpr int kDeposeAfter = 3;
+constexpr int kReturnAfter = 3;
 constexpr double kMagnitudesPerLog = 1.0857362047581296;  // 2.5 / ln 10
 constexpr double kMaxHistoryLoss = 8.0;
 constexpr double kHistoryGain = 0.02;        // of an image: the mean of an hour
@@ -70,16 +71,27 @@ void TargetTracker::compare_with_prediction() {
     const double floor = math::hypot(settings_.shape_floor, hypothesis.sigma);
     const double unknown = settings_.motion.shape_sigma;
     const Matrix5 unit = state.jacobian * state.jacobian.transpose();
-    const SlopeDistance as_target =
-        slope_distance(state.slopes - work_.prediction.slopes,
-                       state.covariance + work_.prediction.covariance + floor * floor * unit, kRegular);
+    const Matrix5 common = floor * floor * unit;
     const SlopeDistance as_other =
         slope_distance(Vector5::Zero(), state.covariance + unknown * unknown * unit, kRegular);
-    hypothesis.distance = as_target.square;
-    double evidence = 0.5 * (as_other.log_determinant - as_target.log_determinant - as_target.square);
+    double evidence = evidence_for(work_.prediction, state, common, as_other.log_determinant, hypothesis.distance);
+    if (work_.kept_prediction) {
+      hypothesis.kept_identity =
+          evidence_for(*work_.kept_prediction, state, common, as_other.log_determinant, hypothesis.kept_distance);
+    }
     if (work_.is_search) evidence -= evidence_for_known(hypothesis, state, unit, as_other.log_determinant);
     hypothesis.identity = evidence - history_loss(hypothesis);
   }
+}
+
+/// Log-likelihood ratio of moving as predicted against any motion, and the squared distance from the prediction.
+/// `common`: covariance of errors that all images of a track have in common.
+double TargetTracker::evidence_for(const Prediction& prediction, const SlopeState& state, const Matrix5& common,
+                                   double log_determinant_of_any, double& distance) const {
+  const SlopeDistance as_target =
+      slope_distance(state.slopes - prediction.slopes, state.covariance + prediction.covariance + common, kRegular);
+  distance = as_target.square;
+  return 0.5 * (log_determinant_of_any - as_target.log_determinant - as_target.square);
 }
 
 /// Log-likelihood ratio of being a satellite that was seen beside the target against any. That one still moves as it
@@ -106,13 +118,27 @@ double TargetTracker::history_loss(const Hypothesis& hypothesis) const {
   if (!work_.is_search) return 0.0;
   double loss = is_another(hypothesis) ? settings_.beside_loss : 0.0;
   const double distance = math::abs(work_.prediction.along_track_m);
-  if (!target_log_power_ || !(distance > 0.0)) return loss;
+  if (!(distance > 0.0)) return loss;
+  loss += extent_loss(hypothesis, distance);
+  if (!target_log_power_) return loss;
   const double log_power = hypothesis.log_flux + 2.0 * math::log(distance);
   const double magnitudes = kMagnitudesPerLog * (log_power - *target_log_power_);
   // The error of the distance is one of brightness.
   const double of_distance = 2.0 * kMagnitudesPerLog * std::min(work_.prediction.along_track_sigma_fraction, 1.0);
   const double sigma = math::hypot(settings_.history_sigma, of_distance);
   return loss + std::min(0.5 * magnitudes * magnitudes / (sigma * sigma), kMaxHistoryLoss);
+}
+
+/// The same for the apparent size, where that of the target is resolved at `distance`, m: another satellite of its
+/// size, or of its brightness, is smaller further away.
+double TargetTracker::extent_loss(const Hypothesis& hypothesis, double distance) const {
+  if (!target_extent_m_) return 0.0;
+  const double expected = *target_extent_m_ / distance;
+  if (expected < settings_.resolved_rad) return 0.0;
+  const double seen = std::max(hypothesis.apparent_radius, 0.5 * settings_.resolved_rad);
+  const double of_distance = std::min(work_.prediction.along_track_sigma_fraction, 1.0);
+  const double sigmas = math::log(seen / expected) / math::hypot(settings_.size_sigma, of_distance);
+  return std::min(0.5 * sigmas * sigmas, kMaxHistoryLoss);
 }
 
 // A target that was certain where it was predicted leaves its brightness, and the tracks beside it are not its own.
@@ -122,6 +148,9 @@ void TargetTracker::note_history(const Hypothesis& target) {
   const double log_power = target.log_flux + 2.0 * math::log(distance);
   target_log_power_ =
       target_log_power_ ? *target_log_power_ + kHistoryGain * (log_power - *target_log_power_) : log_power;
+  const double extent_m = target.apparent_radius * distance;
+  if (target.apparent_radius >= settings_.resolved_rad)
+    target_extent_m_ = target_extent_m_ ? *target_extent_m_ + kHistoryGain * (extent_m - *target_extent_m_) : extent_m;
   for (std::size_t k = 0; k < count_; ++k) {
     Hypothesis& h = hypotheses_[k];
     if (h.track != target_track_ && h.established && h.images_beside < settings_.beside_images) ++h.images_beside;
@@ -181,6 +210,35 @@ void TargetTracker::choose_target() {
   }
 }
 
+// The orbit that was replaced predicts all five parameters of a motion. The target is the object that moves so, if the
+// present orbit does not explain it and the object that has been taken for the target does not move so. An orbit that
+// was replaced for a small change explains the target nearly as well as its successor, and does not return.
+void TargetTracker::return_to_kept() {
+  is_as_kept_ = false;
+  if (!work_.kept_prediction) {
+    returning_images_ = 0;
+    return;
+  }
+  const Hypothesis* best = nullptr;
+  for (std::size_t k = 0; k < count_; ++k) {
+    const Hypothesis& h = hypotheses_[k];
+    if (!h.established || h.history[0] < 0 || !is_best_of_its_track(k) || h.kept_distance > settings_.identity_gate)
+      continue;
+    if (best == nullptr || h.kept_identity > best->kept_identity) best = &h;
+  }
+  const Hypothesis* const target = target_track_ == 0 ? nullptr : best_of(target_track_);
+  const bool is_better = best != nullptr &&
+                         best->kept_identity - std::max(best->identity, 0.0) > settings_.identity_margin &&
+                         (target == nullptr || target->track == best->track ||
+                          best->kept_identity - target->kept_identity > settings_.identity_margin);
+  returning_images_ = is_better ? returning_images_ + 1 : 0;
+  if (returning_images_ < kReturnAfter) return;
+  target_track_ = best->track;
+  deposing_images_ = 0;
+  returning_images_ = 0;
+  is_as_kept_ = true;
+}
+
 // By how much a track's best hypothesis with the candidate in this image exceeds its best one without; no hypothesis
 // with it or none without: -kAlone or kAlone.
 double TargetTracker::claim(std::uint32_t track, std::int16_t candidate) const {
@@ -213,6 +271,7 @@ TrackerOutput TargetTracker::report() {
   output.hypotheses = static_cast<int>(count_);
   output.hot_pixels = static_cast<int>(hot_pixels_.known());
   output.score_margin = score_margin_;
+  output.is_as_kept = is_as_kept_;
   for (std::size_t k = 0; k < count_; ++k) {
     if (is_best_of_its_track(k)) ++output.tracks;
   }

@@ -30,6 +30,7 @@ using mission::Range;
 using mission::TableReader;
 
 using twins::gnss::GpsEphemerisLog;
+using twins::gnss::L1Code;
 using twins::gnss::StartMode;
 
 constexpr Names<StartMode, 3> kStartModes{
@@ -44,6 +45,8 @@ void read_vector(const TableReader& section, std::string_view key, Range range, 
   value = {xyz[0], xyz[1], xyz[2]};
 }
 
+constexpr Names<L1Code, 2> kL1Codes{{{"ca", L1Code::kCa}, {"p", L1Code::kP}}};
+
 void read_tracking(const TableReader& section, twins::gnss::TrackingSettings& settings) {
   settings.thermal_noise = section.flag("thermal_noise", settings.thermal_noise);
   read(section, "code_loop_bandwidth_hz", above_to(0.0, 100.0), settings.code_loop_bandwidth_hz);
@@ -56,6 +59,14 @@ void read_tracking(const TableReader& section, twins::gnss::TrackingSettings& se
   read(section, "code_bias_sigma_m", from_to(0.0, 100.0), settings.code_bias_sigma_m);
   read(section, "carrier_wander_sigma_mm", from_to(0.0, 100.0), settings.carrier_wander_sigma_mm);
   read(section, "carrier_wander_time_s", above_to(0.0, 1e6), settings.carrier_wander_time_s);
+  settings.l1_code = section.choice<L1Code>("l1_code", kL1Codes, settings.l1_code);
+  read(section, "w_code_rate_khz", from_to(0.0, 10230.0), settings.w_code_rate_khz);
+  constexpr Range kWander_m = from_to(0.0, 100.0);
+  read(section, "code_wander_l1_zenith_m", kWander_m, settings.code_wander_l1.zenith_m);
+  read(section, "code_wander_l1_horizon_m", kWander_m, settings.code_wander_l1.horizon_m);
+  read(section, "code_wander_l2_zenith_m", kWander_m, settings.code_wander_l2.zenith_m);
+  read(section, "code_wander_l2_horizon_m", kWander_m, settings.code_wander_l2.horizon_m);
+  read(section, "code_wander_time_s", above_to(0.0, 1e6), settings.code_wander_time_s);
 }
 
 void read_start(const TableReader& section, twins::gnss::StartSettings& settings) {
@@ -147,7 +158,10 @@ std::shared_ptr<const mission::SensorSettings> read_gnss(const TableReader& sect
   receiver.ionosphere = section.flag("ionosphere", receiver.ionosphere);
   read_line(section, receiver.output.period_s, sensor->line);
   read_visibility(section.table("visibility"), receiver.visibility);
-  read_link_budget(section.table("link_budget"), receiver.link_budget);
+  const TableReader link_budget = section.table("link_budget");
+  read_link_budget(link_budget, receiver.link_budget);
+  receiver.link_budget.antenna_pattern =
+      mission::data_file(link_budget, "antenna_pattern", receiver.link_budget.antenna_pattern, context.mission);
   read_tracking(section.table("tracking"), receiver.tracking);
   read_start(section.table("start"), receiver.start);
   read_receiver_clock(section.table("clock"), receiver.clock);

@@ -52,7 +52,7 @@ GnssReceiver::GnssReceiver(const GnssReceiverSettings& settings, std::shared_ptr
       seed_(seed),
       name_(name),
       constellation_(needed(constellation)),
-      pattern_(AntennaPattern::load(data_directory)),
+      pattern_(AntennaPattern::read(data_directory / settings.link_budget.antenna_pattern)),
       body_errors_(draw_body_frame(settings.body_frame, seed, name)),
       antenna_noise_(seed, "gnss/" + name + "/antenna_noise"),
       clock_(settings.clock, seed, name),
@@ -198,14 +198,16 @@ void GnssReceiver::observe(const AntennaState& antenna, fsw::GpsTime now) {
 void GnssReceiver::observe_satellite(const AntennaState& antenna, fsw::GpsTime now, std::size_t index) {
   SatelliteTracking& tracking = tracking_[index];
   const std::optional<SignalPath> path = visible_path(*constellation_, index, antenna, settings_.visibility);
-  std::vector<double> cn0_dbhz;
+  SignalStrengths strengths;
   if (path) {
     ++truth_.visible_satellites;
     const double attenuation_db = pattern_.attenuation_db(path->line_of_sight.dot(antenna.boresight_ecef));
+    std::vector<double> cn0_dbhz;
     for (const SignalTrack& track : tracking.signals())
       cn0_dbhz.push_back(carrier_to_noise_dbhz(settings_.link_budget, track.signal, path->range_m, attenuation_db));
+    strengths = signal_strengths(settings_.tracking, tracking.satellite().system, std::move(cn0_dbhz));
   }
-  tracking.update(now, !on_, cn0_dbhz);
+  tracking.update(now, !on_, strengths.carrier);
   if (!path) return;
 
   const double sin_elevation = path->line_of_sight.dot(antenna.position_ecef.normalized());
@@ -214,16 +216,19 @@ void GnssReceiver::observe_satellite(const AntennaState& antenna, fsw::GpsTime n
           ? klobuchar_delay_in_orbit_m(constellation_->corrections().klobuchar, antenna.position_ecef,
                                        path->line_of_sight, week_time(System::kGps, now).seconds_of_week())
           : 0.0;
-  for (SignalTrack& track : tracking.signals())
-    if (track.tracking) observe_signal(track, *path, ionosphere_l1_m, std::asin(sin_elevation), now, index);
+  for (std::size_t k = 0; k < tracking.signals().size(); ++k) {
+    SignalTrack& track = tracking.signals()[k];
+    if (track.tracking)
+      observe_signal(track, {*path, ionosphere_l1_m, std::asin(sin_elevation), strengths.code[k]}, now, index);
+  }
 }
 
-void GnssReceiver::observe_signal(SignalTrack& track, const SignalPath& path, double ionosphere_l1_m, double elevation,
-                                  fsw::GpsTime now, std::size_t index) {
+void GnssReceiver::observe_signal(SignalTrack& track, const Reception& reception, fsw::GpsTime now, std::size_t index) {
+  const SignalPath& path = reception.path;
   const Signal signal = track.signal;
   const SignalBias& bias = biases_[static_cast<std::size_t>(signal)];
   const double lambda = wavelength_m(signal);
-  const double ionosphere_m = ionosphere_l1_m * ionosphere_scale(signal);
+  const double ionosphere_m = reception.ionosphere_l1_m * ionosphere_scale(signal);
   const double common_m = path.range_m + path.shapiro_m + kSpeedOfLight * (clock_.offset_s() - path.satellite_clock_s);
 
   ObservationTruth truth;
@@ -234,10 +239,12 @@ void GnssReceiver::observe_signal(SignalTrack& track, const SignalPath& path, do
                  bias.code_m;
   truth.carrier_m = common_m - ionosphere_m;
   truth.ionosphere_m = ionosphere_m;
-  truth.elevation = elevation;
+  truth.elevation = reception.elevation;
   truth.ambiguity_cycles = track.ambiguity_cycles;
   truth.carrier_fraction_cycles = bias.carrier_fraction_cycles;
   truth.carrier_wander_m = track.carrier_wander_m.at(now);
+  truth.code_wander_m =
+      code_wander_of(settings_.tracking, signal).sigma_m(std::sin(reception.elevation)) * track.code_wander.at(now);
   truth.slips = track.slips;
   truth_.observations.push_back(truth);
 
@@ -245,7 +252,7 @@ void GnssReceiver::observe_signal(SignalTrack& track, const SignalPath& path, do
   record.satellite = truth.satellite;
   record.signal = signal;
   record.channel = static_cast<int>(index % 32);
-  record.pseudorange_sigma_m = code_noise_m(settings_.tracking, signal, track.cn0_dbhz);
+  record.pseudorange_sigma_m = code_noise_m(settings_.tracking, signal, reception.code_cn0_dbhz);
   record.carrier_sigma_cycles = carrier_noise_m(settings_.tracking, signal, track.cn0_dbhz) / lambda;
   const double rate_sigma_mps = range_rate_noise_mps(settings_.tracking, signal, track.cn0_dbhz);
   // Always drawn: the stream is the same with noise on or off.
@@ -255,7 +262,7 @@ void GnssReceiver::observe_signal(SignalTrack& track, const SignalPath& path, do
   const double noise = settings_.tracking.thermal_noise ? 1.0 : 0.0;
   const double rate_mps = path.range_rate_mps + kSpeedOfLight * (clock_.drift() - path.satellite_clock_drift) +
                           noise * rate_draw * rate_sigma_mps;
-  record.pseudorange_m = truth.code_m + noise * code_draw * record.pseudorange_sigma_m;
+  record.pseudorange_m = truth.code_m + noise * code_draw * record.pseudorange_sigma_m + truth.code_wander_m;
   record.carrier_phase_cycles = truth.carrier_m / lambda + static_cast<double>(track.ambiguity_cycles) +
                                 bias.carrier_fraction_cycles + noise * carrier_draw * record.carrier_sigma_cycles +
                                 truth.carrier_wander_m / lambda;

@@ -2,14 +2,15 @@
 // A NovAtel OEM628 on a spacecraft, as bytes: GPS L1/L2, Galileo E1, BeiDou B1I.
 //
 // Observables, in metres (code P, carrier L; r receiver, s satellite, f signal):
-//   P = range + Shapiro + c (dt_r - dt_s + TGD_f) + I_f + b_rf + noise
+//   P = range + Shapiro + c (dt_r - dt_s + TGD_f) + I_f + b_rf + m_rsf + noise
 //   L = range + Shapiro + c (dt_r - dt_s)         - I_f + lambda_f (N_rsf + beta_rf) + w_rsf + noise
 // at the instant at which its own clock shows the epoch. N is an integer, beta a fraction of a cycle that all carriers
 // of one signal share in one receiver: double differences within a signal hold integers. w is the carrier wander, a
 // first-order Gauss-Markov process of each receiver, satellite and signal. Half-cycle ambiguities do not occur. Phase
 // wind-up is neglected: it is the same in antennas of parallel attitude, which the missions fly (each 20 arcsec of
-// relative yaw would make 3e-6 m). Multipath is neglected, as in the paper's table. Noise of two epochs is independent:
-// right for periods above the code loop's 2 s, while at 1 Hz real code noise would be correlated.
+// relative yaw would make 3e-6 m). m is the code wander, multipath for example: a process like w whose sigma depends on
+// the elevation; by default there is none, as in the paper's table. Noise of two epochs is independent: right for
+// periods above the code loop's 2 s, while at 1 Hz real code noise would be correlated.
 
 #include <cstdint>
 #include <memory>
@@ -43,6 +44,7 @@ struct ObservationTruth {
   std::int64_t ambiguity_cycles = 0;
   double carrier_fraction_cycles = 0.0;  ///< beta
   double carrier_wander_m = 0.0;         ///< w
+  double code_wander_m = 0.0;            ///< m
   int slips = 0;
 };
 
@@ -100,14 +102,19 @@ class GnssReceiver final : public ReceiverBytes {
     double carrier_fraction_cycles = 0.0;
   };
 
+  // How one signal arrives.
+  struct Reception {
+    const SignalPath& path;
+    double ionosphere_l1_m, elevation, code_cn0_dbhz;
+  };
+
   void advance(const BodyTruth& truth);
   void restart();
   bool slip_satellites(const std::string& satellite, std::int64_t cycles);
   AntennaState antenna_state(const BodyTruth& truth);
   void observe(const AntennaState& antenna, fsw::GpsTime now);
   void observe_satellite(const AntennaState& antenna, fsw::GpsTime now, std::size_t index);
-  void observe_signal(SignalTrack& track, const SignalPath& path, double ionosphere_l1_m, double elevation,
-                      fsw::GpsTime now, std::size_t index);
+  void observe_signal(SignalTrack& track, const Reception& reception, fsw::GpsTime now, std::size_t index);
   void hear_messages(fsw::GpsTime now);
   [[nodiscard]] std::optional<PointSolution> point_solution(const AntennaState& antenna) const;
   [[nodiscard]] oem::TimeStatus time_status(fsw::GpsTime now, bool solved) const;

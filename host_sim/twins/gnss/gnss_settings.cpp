@@ -1,5 +1,6 @@
 #include "host_sim/twins/gnss/gnss_settings.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -51,6 +52,12 @@ void check_tracking(const TrackingSettings& tracking) {
   need_between("code_bias_sigma_m", tracking.code_bias_sigma_m, 0.0, 1000.0);
   need_between("carrier_wander_sigma_mm", tracking.carrier_wander_sigma_mm, 0.0, 100.0);
   need_between("carrier_wander_time_s", tracking.carrier_wander_time_s, 1e-3, 1e6);
+  need_between("w_code_rate_khz", tracking.w_code_rate_khz, 0.0, 10230.0);
+  need_between("code_wander_l1_zenith_m", tracking.code_wander_l1.zenith_m, 0.0, 100.0);
+  need_between("code_wander_l1_horizon_m", tracking.code_wander_l1.horizon_m, 0.0, 100.0);
+  need_between("code_wander_l2_zenith_m", tracking.code_wander_l2.zenith_m, 0.0, 100.0);
+  need_between("code_wander_l2_horizon_m", tracking.code_wander_l2.horizon_m, 0.0, 100.0);
+  need_between("code_wander_time_s", tracking.code_wander_time_s, 1e-3, 1e6);
 }
 
 void check_start(const StartSettings& start) {
@@ -89,6 +96,11 @@ void check_output(const OutputSettings& output) {
 }
 
 }  // namespace
+
+double CodeWander::sigma_m(double sin_elevation) const {
+  const double cos2 = 1.0 - sin_elevation * sin_elevation;
+  return std::sqrt(zenith_m * zenith_m * sin_elevation * sin_elevation + horizon_m * horizon_m * std::max(0.0, cos2));
+}
 
 void check(const GnssReceiverSettings& settings) {
   check_visibility(settings.visibility);

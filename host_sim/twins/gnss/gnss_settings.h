@@ -3,6 +3,7 @@
 // others those of a NovAtel OEM628 and a typical patch antenna.
 
 #include <cstdint>
+#include <filesystem>
 
 #include "fsw/core/types.h"
 
@@ -19,13 +20,27 @@ struct VisibilitySettings {
 
 /// Link budget from transmitted power to C/N0. The antennas of the satellites are isotropic (A: spherical gain).
 struct LinkBudgetSettings {
-  double boresight_gain_dbi = 4.0;  ///< with the pattern of data/gps below it
+  double boresight_gain_dbi = 4.0;  ///< with the pattern of the file below it
+  /// File of AntennaPattern, seen from the data folder.
+  std::filesystem::path antenna_pattern = "gps/receiver_antenna_typical_patch.csv";
   double antenna_temperature_k = 130.0;
   double lna_gain_db = 33.0;  ///< A
   double lna_noise_figure_db = 2.0;
   double receiver_noise_figure_db = 8.0;  ///< behind the amplifier
   double losses_db = 2.0;                 ///< polarisation, cable, quantisation
   friend bool operator==(const LinkBudgetSettings&, const LinkBudgetSettings&) = default;
+};
+
+/// Code of GPS L1 that is tracked.
+enum class L1Code : std::uint8_t { kCa, kP };
+
+/// One sigma of a code error that is correlated in time, m, at the zenith and at the horizon:
+///   sigma^2 = (zenith sin E)^2 + (horizon cos E)^2.
+struct CodeWander {
+  double zenith_m = 0.0, horizon_m = 0.0;
+  [[nodiscard]] double sigma_m(double sin_elevation) const;
+  [[nodiscard]] bool is_none() const { return zenith_m == 0.0 && horizon_m == 0.0; }
+  friend bool operator==(const CodeWander&, const CodeWander&) = default;
 };
 
 /// Tracking loops. Noise: formulas of the coherent early-late and Costas loops.
@@ -42,6 +57,11 @@ struct TrackingSettings {
   double code_bias_sigma_m = 0.0;         ///< constant code delay of each signal in the receiver
   double carrier_wander_sigma_mm = 0.0;   ///< first-order Gauss-Markov error of each satellite's and signal's carrier
   double carrier_wander_time_s = 60.0;    ///< its correlation time
+  L1Code l1_code = L1Code::kCa;           ///< code of pseudoranges of L1; its carrier is that of C/A
+  double w_code_rate_khz = 0.0;           ///< P(Y) without its encryption W of this chip rate; 0: W is known
+  CodeWander code_wander_l1;              ///< first-order Gauss-Markov error of each satellite's code: multipath;
+  CodeWander code_wander_l2;              ///< L1 with E1 and B1I, and L2
+  double code_wander_time_s = 300.0;      ///< their correlation time
   friend bool operator==(const TrackingSettings&, const TrackingSettings&) = default;
 };
 

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -36,7 +37,10 @@ double reference_distance_m(System system) {
 }  // namespace
 
 AntennaPattern AntennaPattern::load(const std::filesystem::path& data_directory) {
-  const std::filesystem::path file = data_directory / "gps" / "receiver_antenna_typical_patch.csv";
+  return read(data_directory / LinkBudgetSettings{}.antenna_pattern);
+}
+
+AntennaPattern AntennaPattern::read(const std::filesystem::path& file) {
   files::DataStream in(file);
   if (!in) throw std::runtime_error(fmt::format("{}: cannot be read", file.string()));
   AntennaPattern pattern;
@@ -82,13 +86,37 @@ double carrier_to_noise_dbhz(const LinkBudgetSettings& settings, Signal signal, 
          10.0 * std::log10(kBoltzmann * temperature_k);
 }
 
+double semicodeless_cn0_dbhz(double cn0_dbhz, double other_cn0_dbhz, double w_code_rate_khz) {
+  return cn0_dbhz - 10.0 * std::log10(1.0 + 1e3 * w_code_rate_khz / (2.0 * power_ratio(other_cn0_dbhz)));
+}
+
+SignalStrengths signal_strengths(const TrackingSettings& settings, System system, std::vector<double> cn0_dbhz) {
+  SignalStrengths strengths{cn0_dbhz, std::move(cn0_dbhz)};
+  if (system != System::kGps) return strengths;
+  constexpr std::size_t kL1 = 0, kL2 = 1;
+  constexpr double kPBelowCa_db = 3.0;
+  const double l1_p_dbhz = strengths.carrier[kL1] - kPBelowCa_db, l2_p_dbhz = strengths.carrier[kL2];
+  if (settings.l1_code == L1Code::kP)
+    strengths.code[kL1] = semicodeless_cn0_dbhz(l1_p_dbhz, l2_p_dbhz, settings.w_code_rate_khz);
+  // Not recomputed where nothing is lost: the logarithm would change its last bits.
+  if (settings.w_code_rate_khz > 0.0)
+    strengths.code[kL2] = strengths.carrier[kL2] =
+        semicodeless_cn0_dbhz(l2_p_dbhz, l1_p_dbhz, settings.w_code_rate_khz);
+  return strengths;
+}
+
 double code_noise_m(const TrackingSettings& settings, Signal signal, double cn0_dbhz) {
-  const SignalStructure& s = structure(signal);
+  const bool is_l1_by_p = signal == Signal::kGpsL1 && settings.l1_code == L1Code::kP;
+  const SignalStructure& s = structure(is_l1_by_p ? Signal::kGpsL2 : signal);
   const double cn0 = power_ratio(cn0_dbhz);
   const double d = s.correlator_spacing_chips;
   const double chips = std::sqrt(settings.code_loop_bandwidth_hz * d / (2.0 * cn0) *
                                  (1.0 + 2.0 / ((2.0 - d) * settings.integration_s * cn0)));
   return fsw::gnss::kSpeedOfLight / s.chip_rate_hz * chips;
+}
+
+const CodeWander& code_wander_of(const TrackingSettings& settings, Signal signal) {
+  return signal == Signal::kGpsL2 ? settings.code_wander_l2 : settings.code_wander_l1;
 }
 
 double carrier_noise_m(const TrackingSettings& settings, Signal signal, double cn0_dbhz) {
@@ -125,9 +153,13 @@ SatelliteTracking::SatelliteTracking(SatelliteId satellite, const StartSettings&
   for (std::size_t k = 0; k < kSignals; ++k) {
     if (kSignalStructures[k].system != satellite.system) continue;
     const std::string name = stream_name(receiver, satellite) + "/" + kSignalStructures[k].name;
-    signals_.emplace_back(static_cast<Signal>(k), engine::RandomStream(seed, name),
-                          engine::GaussMarkov(1e-3 * tracking.carrier_wander_sigma_mm, tracking.carrier_wander_time_s,
-                                              engine::RandomStream(seed, name + "/carrier_wander")));
+    const auto signal = static_cast<Signal>(k);
+    signals_.emplace_back(
+        signal, engine::RandomStream(seed, name),
+        engine::GaussMarkov(1e-3 * tracking.carrier_wander_sigma_mm, tracking.carrier_wander_time_s,
+                            engine::RandomStream(seed, name + "/carrier_wander")),
+        engine::GaussMarkov(code_wander_of(tracking, signal).is_none() ? 0.0 : 1.0, tracking.code_wander_time_s,
+                            engine::RandomStream(seed, name + "/code_wander")));
   }
 }
 

@@ -17,8 +17,10 @@ namespace vbar::twins::gnss {
 /// Attenuation of the receiving antenna against the angle from its boresight.
 class AntennaPattern {
  public:
-  /// Reads data_directory/gps/receiver_antenna_typical_patch.csv: angles from 0 to 180 deg, rising. Throws
-  /// std::runtime_error naming file and line.
+  /// Reads a file of angles (deg, from 0 to 180, rising) and attenuations (dB). Throws std::runtime_error naming file
+  /// and line.
+  static AntennaPattern read(const std::filesystem::path& file);
+  /// Reads the one of the default settings in a data folder likewise.
   static AntennaPattern load(const std::filesystem::path& data_directory);
 
   /// Returns the attenuation, dB below boresight at `cosine` of the angle, linear between the file's angles.
@@ -37,9 +39,31 @@ class AntennaPattern {
 double carrier_to_noise_dbhz(const LinkBudgetSettings& settings, Signal signal, double distance_m,
                              double antenna_attenuation_db);
 
+/// Returns C/N0 (dB-Hz) with which P(Y) is tracked where its encryption W is unknown and each of its chips is estimated
+/// from the other frequency, whose C/N0 is `other_cn0_dbhz`:
+///   (C/N0) / (1 + R/(2 (C/N0)_other)),   R the chip rate of W, 0 if it is known.
+/// What multiplies C/N0 is the squaring loss of a loop (Kaplan, Hegarty 2017, 8.3.3) that integrates over one chip of W
+/// only. With weak signals it falls by 2 dB with each dB, as models of semicodeless tracking do (Betz, Cerruti 2020,
+/// Navigation 67, 109).
+double semicodeless_cn0_dbhz(double cn0_dbhz, double other_cn0_dbhz, double w_code_rate_khz);
+
+/// C/N0 of the signals of a satellite, dB-Hz, in their order.
+struct SignalStrengths {
+  std::vector<double> carrier;  ///< with which they are acquired, tracked and reported
+  std::vector<double> code;     ///< of the code of pseudoranges
+};
+
+/// Returns the strengths of signals whose C/N0 by the link budget is `cn0_dbhz`. The two differ for L1 with
+/// pseudoranges of P(Y), which is transmitted with 3 dB less than C/A (IS-GPS-200N table 3-Va).
+SignalStrengths signal_strengths(const TrackingSettings& settings, System system, std::vector<double> cn0_dbhz);
+
 /// Returns one sigma of the code loop (m), coherent early minus late power discriminator:
 ///   (c/Rc) sqrt(B d/(2 C/N0) (1 + 2/((2-d) T C/N0)))   (Kaplan, Hegarty 2017, 8.4.3).
+/// Rc and d are those of the signal; L1 with P(Y) (settings.l1_code) has those of L2.
 double code_noise_m(const TrackingSettings& settings, Signal signal, double cn0_dbhz);
+
+/// Returns the sigma of the correlated error of a signal's code.
+const CodeWander& code_wander_of(const TrackingSettings& settings, Signal signal);
 
 /// Returns one sigma of the carrier loop (m): (lambda/2pi) sqrt(B/(C/N0) (1 + 1/(2 T C/N0)))   (the same, 8.3.3).
 double carrier_noise_m(const TrackingSettings& settings, Signal signal, double cn0_dbhz);
@@ -53,12 +77,14 @@ double range_rate_noise_mps(const TrackingSettings& settings, Signal signal, dou
 
 /// One signal's loops.
 struct SignalTrack {
-  SignalTrack(Signal of, const engine::RandomStream& draws, const engine::GaussMarkov& wander_m)
-      : signal(of), stream(draws), carrier_wander_m(wander_m) {}
+  SignalTrack(Signal of, const engine::RandomStream& draws, const engine::GaussMarkov& of_carrier_m,
+              const engine::GaussMarkov& of_code)
+      : signal(of), stream(draws), carrier_wander_m(of_carrier_m), code_wander(of_code) {}
 
   Signal signal;
   engine::RandomStream stream;           ///< stream of its slips, ambiguities and noise
   engine::GaussMarkov carrier_wander_m;  ///< continues whether the signal is tracked or not
+  engine::GaussMarkov code_wander;       ///< likewise, in units of its sigma
   bool tracking = false;
   fsw::GpsTime lock_since;            ///< start of the continuous count, as the receiver reports it
   std::int64_t ambiguity_cycles = 0;  ///< added to the true phase
@@ -68,8 +94,8 @@ struct SignalTrack {
 
 class SatelliteTracking {
  public:
-  /// Draws from the streams "gnss/<receiver>/<satellite>", "gnss/<receiver>/<satellite>/<signal>", and
-  /// "gnss/<receiver>/<satellite>/<signal>/carrier_wander" of `seed`.
+  /// Draws from the streams "gnss/<receiver>/<satellite>", "gnss/<receiver>/<satellite>/<signal>", and, of the latter,
+  /// ".../carrier_wander" and ".../code_wander" of `seed`.
   SatelliteTracking(SatelliteId satellite, const StartSettings& start, const TrackingSettings& tracking,
                     std::uint64_t seed, std::string_view receiver);
 

@@ -23,7 +23,7 @@ class Page:
         self.to_browser, self.from_browser = to_browser, from_browser
         self.number, self.session, self.buffer = 0, None, b""
         self.errors, self.loads = [], []
-        target = self.call("Target.createTarget", url="about:blank")["targetId"]
+        target = next(target["targetId"] for target in self.call("Target.getTargets")["targetInfos"] if target["type"] == "page")
         self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
@@ -107,7 +107,7 @@ def browser(*flags):
             ["bash", "-c", f'exec "$0" "$@" 3<&{ends[0]} 4>&{ends[1]}', program(), "--headless=new", "--no-sandbox",
              "--no-first-run", "--disable-dev-shm-usage", "--disable-extensions", "--disable-background-networking",
              "--disable-component-update", "--disable-sync", "--mute-audio", "--enable-unsafe-swiftshader",
-             "--remote-debugging-pipe", f"--user-data-dir={profile}", *flags],
+             "--remote-debugging-pipe", f"--user-data-dir={profile}", *flags, "about:blank"],
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, pass_fds=ends)
         for end in (to_read, from_write, *ends):
             os.close(end)

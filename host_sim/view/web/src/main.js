@@ -161,20 +161,20 @@ function plotsOf(place, runs, cursor, link) {
   row.setAttribute('role', 'tablist');
   place.append(row, make('div', { class: 'plotArea' }, chooser, area));
   choose(link.get('tab'));
-  // Tabs without content go when there is time to find that out.
+  // Tabs without content go when there is time to find that out; those of a propagation have some.
   const hideEmpty = (k) => {
     if (k >= tabs.length) return;
     if (tabs[k].plots) buttons[k].hidden = tabs[k].plots().length === 0;
     setTimeout(() => hideEmpty(k + 1), 100);
   };
-  setTimeout(() => hideEmpty(0), 1500);
+  if (!runs[0].isPropagation) setTimeout(() => hideEmpty(0), 1500);
   return choose;
 }
 
 async function start() {
   const heads = JSON.parse(document.getElementById('runs').textContent);
   document.getElementById('runs').remove();
-  const runs = await Promise.all(heads.map((head) => Run.read(head)));
+  const runs = await Promise.all(heads.map(Run.read));
   const page = document.getElementById('page');
   const [run] = runs;
   if (!run.time?.length) throw new Error('the run has no steps');

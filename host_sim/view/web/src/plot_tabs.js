@@ -1,7 +1,7 @@
 // The tabs of plots: which columns of which tables make a curve. A curve: x (h), y (SI, null where there is no value), unit,
 // label, style.
 
-import { cross, dot, norm } from './frames.js';
+import { norm } from './frames.js';
 import { indexAt } from './run_data.js';
 import { number, unitOf, withoutUnit } from './units.js';
 
@@ -10,8 +10,13 @@ const kTrue = { width: 3.5 };  // under the estimate, and visible beside it
 const kElementNames = ['a δa', 'a δλ', 'a δex', 'a δey', 'a δix', 'a δiy'];
 
 // A gap is null: a NaN would leave the whole curve and its scale empty.
-const gapped = (values) => Array.from(values, (y) => (Number.isFinite(y) ? y : null));
-const hoursOf = (time) => Float64Array.from(time, (t) => t / 3600);
+const gapped = (values) => (values.every(Number.isFinite) ? values : Array.from(values, (y) => (Number.isFinite(y) ? y : null)));
+
+/** Hours of a list of seconds: the same list for the same one, by which plots know curves over the same times. */
+const hoursOf = (() => {
+  const known = new WeakMap();
+  return (time) => known.get(time) ?? known.set(time, Float64Array.from(time, (t) => t / 3600)).get(time);
+})();
 
 const curve = (label, colour, time, values, more = {}) => ({ label, colour, x: hoursOf(time), y: gapped(values), ...more });
 
@@ -53,7 +58,7 @@ function relativePlots(run) {
 function withinText(run, error, sigma) {
   const within = [...error.values.keys()].filter((k) => Number.isFinite(error.values[k]) && sigma[k] > 0);
   const share = (rows) => `${number((100 * rows.filter((k) => Math.abs(error.values[k]) <= 3 * sigma[k]).length) / rows.length, 3)} %`;
-  const shaded = within.filter((k) => run.eclipses.some(({ begin, end }) => error.time[k] >= begin && error.time[k] < end));
+  const { eclipses } = run, shaded = within.filter((k) => eclipses.some(({ begin, end }) => error.time[k] >= begin && error.time[k] < end));
   return within.length ? `: in 3σ ${share(within)}${shaded.length ? `, in eclipse ${share(shaded)}` : ''}` : '';
 }
 
@@ -128,28 +133,42 @@ const kHealthColumns = ['packets_accepted', 'rejected_other', 'solver_fallbacks'
 
 export const kEarth_m3ps2 = 3.986004415e14;  // of the truth's gravity field (GGM05S)
 
-/** Osculating elements of a position and a velocity (m, m/s, ECI): semi-major axis in m, eccentricity, angles in deg. */
-function elementsOf(r, v) {
-  const h = cross(r, v), size = norm(r), toDeg = 180 / Math.PI, positive = (angle) => (angle + 360) % 360;
-  const e = cross(v, h).map((x, k) => x / kEarth_m3ps2 - r[k] / size);
-  return { semiMajorAxis: 1 / (2 / size - dot(v, v) / kEarth_m3ps2), eccentricity: norm(e), inclination: Math.acos(h[2] / norm(h)) * toDeg,
-           ascendingNode: positive(Math.atan2(h[0], -h[1]) * toDeg) };
+/** Osculating elements of a position and a velocity (m, m/s, ECI): semi-major axis in m, eccentricity, angles in deg. Made
+ *  for tens of thousands of rows: without arrays. */
+function elementsOf(x, y, z, u, v, w) {
+  const hx = y * w - z * v, hy = z * u - x * w, hz = x * v - y * u, h = Math.hypot(hx, hy, hz), size = Math.hypot(x, y, z), toDeg = 180 / Math.PI;
+  const ex = (v * hz - w * hy) / kEarth_m3ps2 - x / size, ey = (w * hx - u * hz) / kEarth_m3ps2 - y / size, ez = (u * hy - v * hx) / kEarth_m3ps2 - z / size;
+  return { semiMajorAxis: 1 / (2 / size - (u * u + v * v + w * w) / kEarth_m3ps2), eccentricity: Math.hypot(ex, ey, ez), inclination: Math.acos(hz / h) * toDeg,
+           ascendingNode: (Math.atan2(hx, -hy) * toDeg + 360) % 360 };
 }
 
 const kStateColumns = ['position_eci_x_m', 'position_eci_y_m', 'position_eci_z_m', 'velocity_eci_x_mps', 'velocity_eci_y_mps', 'velocity_eci_z_mps'];
 
 /** The osculating elements of the first spacecraft of a propagation in a row. */
 export function orbitOf(run, row) {
-  const state = run.table(run.spacecraft[0]).vector(...kStateColumns).map((column) => column[row]);
-  return elementsOf(state.slice(0, 3), state.slice(3));
+  return elementsOf(...run.table(run.spacecraft[0]).vector(...kStateColumns).map((column) => column[row]));
+}
+
+const kElementsShown = [['semiMajorAxis', 'Semi-major axis', 'm'], ['eccentricity', 'Eccentricity', ''], ['inclination', 'Inclination', 'deg'],
+                        ['ascendingNode', 'Right ascension of the ascending node', 'deg']];
+
+/** The elements shown of all rows of a spacecraft, each an array. */
+function elementsOfRows(run, name) {
+  const [x, y, z, u, v, w] = run.table(name).vector(...kStateColumns);
+  const elements = Object.fromEntries(kElementsShown.map(([element]) => [element, new Float64Array(x.length)]));
+  for (let row = 0; row < x.length; ++row) {
+    const of = elementsOf(x[row], y[row], z[row], u[row], v[row], w[row]);
+    for (const element in elements) elements[element][row] = of[element];
+  }
+  return elements;
 }
 
 /** Orbits of the spacecraft of a propagation. */
 function orbitPlots(run) {
-  const of = (each) => run.spacecraft.flatMap((name, k) => computed(run, name, kStateColumns, (s) => each(elementsOf(s.slice(0, 3), s.slice(3))), name, `c${k % 6}`));
+  const all = run.spacecraft.map((name) => elementsOfRows(run, name));
+  const curves = (element) => run.spacecraft.map((name, k) => curve(name, `c${k % 6}`, run.table(name).time, all[k][element]));
   return [{ title: 'Altitude above WGS 84', unit: 'm', curves: run.spacecraft.flatMap((name, k) => column(run, name, 'altitude_m', name, `c${k % 6}`)) },
-          { title: 'Semi-major axis', unit: 'm', curves: of((o) => o.semiMajorAxis) }, { title: 'Eccentricity', unit: '', curves: of((o) => o.eccentricity) },
-          { title: 'Inclination', unit: 'deg', curves: of((o) => o.inclination) }, { title: 'Right ascension of the ascending node', unit: 'deg', curves: of((o) => o.ascendingNode) }];
+          ...kElementsShown.map(([element, title, unit]) => ({ title, unit, curves: curves(element) }))];
 }
 
 const kPropagationTabs = { orbit: ['Orbits', orbitPlots], relative: ['Relative motion', relativePlots] };

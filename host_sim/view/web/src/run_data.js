@@ -1,11 +1,27 @@
 // A run as the page holds it: tables by name, columns as numbers or words, read when they are first asked for.
 
-export async function inflate(base64) {
-  const text = atob(base64), packed = new Uint8Array(text.length);
-  for (let k = 0; k < text.length; ++k) packed[k] = text.charCodeAt(k);
-  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate'));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
+/** Returns the bytes of base64. */
+function bytesOf(base64) {
+  if (Uint8Array.fromBase64) return Uint8Array.fromBase64(base64);
+  const text = atob(base64), bytes = new Uint8Array(text.length);
+  for (let k = 0; k < text.length; ++k) bytes[k] = text.charCodeAt(k);
+  return bytes;
 }
+
+/** Gives memory back before it is collected. */
+const discard = (bytes) => bytes.buffer.transfer?.(0);
+
+/** The stream of the expanded bytes of base64. */
+function expanded(base64) {
+  const { readable, writable } = new DecompressionStream('deflate'), writer = writable.getWriter();
+  const ignore = () => {};  // who reads has the error
+  const bytes = bytesOf(base64);
+  writer.write(bytes).then(() => discard(bytes), ignore);
+  writer.close().catch(ignore);
+  return readable;
+}
+
+export const inflate = async (base64) => new Uint8Array(await new Response(expanded(base64)).arrayBuffer());
 
 /** Returns the last index of ascending `values` whose value is at most `value`; -1 if there is none. */
 export function indexAt(values, value) {
@@ -18,63 +34,106 @@ export function indexAt(values, value) {
   return low - 1;
 }
 
-/** Returns numbers whose bytes are given plane by plane: all lowest ones, then all second ones, and so on. */
-function numbersOfPlanes(bytes) {
-  const rows = bytes.length / 8, whole = new Uint8Array(bytes.length);
-  for (let plane = 0; plane < 8; ++plane) for (let row = 0; row < rows; ++row) whole[8 * row + plane] = bytes[plane * rows + row];
-  return new BigUint64Array(whole.buffer);
+/** Takes the bytes of a column in order: text as it is; numbers come plane by plane, all lowest bytes, then all second ones,
+ *  and so on, and are put together row by row. Returns how many bytes of the part it took. */
+class Filler {
+  #row = 0; #plane = 0; #isText;
+  constructor({ form, bytes }) {
+    this.bytes = new Uint8Array(bytes);
+    this.left = bytes;
+    this.#isText = form === 'text';
+  }
+  take(part) {
+    const count = Math.min(part.length, this.left), { bytes } = this, rows = bytes.length / 8;
+    if (this.#isText) bytes.set(part.subarray(0, count), bytes.length - this.left);
+    else
+      for (let k = 0; k < count; ++k) {
+        bytes[8 * this.#row + this.#plane] = part[k];
+        if (++this.#row === rows) { this.#row = 0; ++this.#plane; }
+      }
+    this.left -= count;
+    return count;
+  }
 }
 
-const difference = (folded) => (folded >> 1n) ^ -(folded & 1n);
+/** Returns the bytes of each column that has its own ones, of a table of the page. */
+async function columnBytes(base64, heads) {
+  const fillers = heads.filter((head) => !head.same).map((head) => new Filler(head));
+  const reader = expanded(base64).getReader();
+  let at = 0;
+  for (let { value: part } = await reader.read(); part; { value: part } = await reader.read()) {
+    let rest = part;
+    while (rest.length) {
+      rest = rest.subarray(fillers[at].take(rest));
+      if (!fillers[at].left) ++at;
+    }
+    discard(part);
+  }
+  return fillers.map(({ bytes }) => bytes);
+}
 
-/** Returns the bits of a column of numbers: as embedded_table.h has made its form. */
-function bitsOf(form, bytes, other) {
-  const bits = numbersOfPlanes(bytes);
-  if (form === 'step') for (let row = 0, before = 0n; row < bits.length; ++row) before = bits[row] = before + difference(bits[row]);
-  if (form === 'difference') other.bits.forEach((number, row) => { bits[row] = number + difference(bits[row]); });
-  return bits;
+/** Adds to the bits of a number before it, or of the reference in the same row, what each number states as the difference
+ *  from them: its sign in the lowest bit. Words of 32 bits, the lower one first. */
+function addDifferences(words, reference) {
+  let low = 0, high = 0;
+  for (let k = 0; k < words.length; k += 2) {
+    if (reference) { low = reference[k]; high = reference[k + 1]; }
+    const sign = -(words[k] & 1), sum = low + (((words[k] >>> 1 | words[k + 1] << 31) ^ sign) >>> 0);
+    high = (high + ((words[k + 1] >>> 1 ^ sign) >>> 0) + (sum > 0xffffffff)) >>> 0;
+    low = sum >>> 0;
+    words[k] = low;
+    words[k + 1] = high;
+  }
+}
+
+/** What the cells of a column state, each form made when it is first asked for. Columns of the same cells share it. */
+class Values {
+  #form; #bytes; #reference; #cells; #numbers;
+  /** `bytes` of text, or of numbers in a form of embedded_table.h; `reference`: the values from which they differ. */
+  constructor(form, bytes, reference) {
+    this.#form = form;
+    this.#bytes = bytes;
+    this.#reference = reference;
+  }
+  static ofCells(cells) {
+    const values = new Values('text');
+    values.#cells = cells;
+    return values;
+  }
+  get isText() { return this.#form === 'text'; }
+  get cells() {
+    if (!this.#cells && this.isText) {
+      this.#cells = new TextDecoder().decode(this.#bytes).split('\n');
+      this.#cells.pop();
+      this.#bytes = undefined;
+    }
+    return (this.#cells ??= Array.from(this.numbers, (number) => (Number.isNaN(number) ? '' : `${number}`)));
+  }
+  get numbers() {
+    if (!this.#numbers) {
+      if (this.isText) this.#numbers = Float64Array.from(this.cells, (cell) => (cell === '' ? NaN : Number(cell)));
+      else {
+        if (this.#form !== 'number') addDifferences(new Uint32Array(this.#bytes.buffer), this.#reference && new Uint32Array(this.#reference.numbers.buffer));
+        this.#numbers = new Float64Array(this.#bytes.buffer);
+      }
+    }
+    return this.#numbers;
+  }
 }
 
 class Column {
-  #data; #cells; #bits; #numbers;
-  /** `data`: form, bytes and, if those are of differences, the column from which. */
-  constructor(table, head, data) {
-    this.table = table;
-    this.name = head.name;
-    this.meaning = head.meaning;
-    this.#data = data;
+  constructor(table, head, values) {
+    Object.assign(this, { table, values, name: head.name, meaning: head.meaning });
   }
   get id() { return `${this.table.name}.${this.name}`; }
-  get data() { return this.#data; }
-  /** The bits of each number, of a column that is not text. */
-  get bits() {
-    return (this.#bits ??= this.#data.form === 'text' ? new BigUint64Array(this.numbers.buffer) : bitsOf(this.#data.form, this.#data.bytes, this.#data.of));
-  }
   /** The text of each cell. */
-  get cells() {
-    if (!this.#cells) {
-      if (this.#data.form === 'text') {
-        this.#cells = new TextDecoder().decode(this.#data.bytes).split('\n');
-        this.#cells.pop();
-      } else {
-        this.#cells = Array.from(this.numbers, (number) => (Number.isNaN(number) ? '' : `${number}`));
-      }
-    }
-    return this.#cells;
-  }
+  get cells() { return this.values.cells; }
   /** The number of each cell; NaN of an empty one, or of a word. */
-  get numbers() {
-    return (this.#numbers ??= this.#data.form === 'text' ? Float64Array.from(this.cells, (cell) => (cell === '' ? NaN : Number(cell)))
-      : new Float64Array(this.bits.buffer));
-  }
+  get numbers() { return this.values.numbers; }
   /** Adds cells of rows that follow. */
-  append(cells) {
-    this.#cells = [...this.cells, ...cells];
-    this.#data = { form: 'text' };
-    this.#numbers = this.#bits = undefined;
-  }
-  get isNumeric() { return this.#data.form !== 'text' || this.cells.every((cell, row) => cell === '' || !Number.isNaN(this.numbers[row])); }
-  get hasValues() { return this.#data.form === 'text' ? this.cells.some((cell) => cell !== '') : this.numbers.some((number) => !Number.isNaN(number)); }
+  append(cells) { this.values = Values.ofCells([...this.cells, ...cells]); }
+  get isNumeric() { return !this.values.isText || this.cells.every((cell, row) => cell === '' || !Number.isNaN(this.numbers[row])); }
+  get hasValues() { return this.values.isText ? this.cells.some((cell) => cell !== '') : this.numbers.some((number) => !Number.isNaN(number)); }
 }
 
 const kTimes = ['time_s', 'execution_time_s', 'begin_s'];
@@ -90,7 +149,7 @@ class Table {
   /** Adds rows of cells, which have the order of `names`. */
   append(names, rows) {
     names.forEach((name, k) => {
-      if (!this.columns.has(name)) this.columns.set(name, new Column(this, { name, meaning: '' }, { form: 'text', bytes: new Uint8Array() }));
+      if (!this.columns.has(name)) this.columns.set(name, new Column(this, { name, meaning: '' }, Values.ofCells([])));
       this.columns.get(name).append(rows.map((cells) => cells[k] ?? ''));
     });
     this.rows += rows.length;
@@ -146,19 +205,20 @@ export class Run {
   get start() { return this.time[0]; }
   get end() { return this.time.at(-1); }
 
-  static async read(head) {
+  /** Reads the run of this place in the page; the tables are in elements of their own, which go. */
+  static async read(head, place) {
     const run = new Run(head);
     const tables = [];
     const at = ([table, column]) => [...tables[table].columns.values()][column];
     for (const tableHead of head.tables) {
       const table = new Table(tableHead);
+      const element = document.getElementById(`data-${place}-${tables.length}`), text = element.textContent;
+      element.remove();
       tables.push(table);
-      const data = await inflate(tableHead.data);
-      let offset = 0;
+      const bytes = await columnBytes(text, tableHead.columns);
       for (const column of tableHead.columns) {
-        const form = column.same ? at(column.same).data
-          : { form: column.form, of: column.of && at(column.of), bytes: data.subarray(offset, offset += column.bytes) };
-        table.columns.set(column.name, new Column(table, column, form));
+        const values = column.same ? at(column.same).values : new Values(column.form, bytes.shift(), column.of && at(column.of).values);
+        table.columns.set(column.name, new Column(table, column, values));
       }
       run.tables.set(table.name, table);
     }

@@ -2,6 +2,7 @@
 
 import * as three from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import { contextOf } from './context.js';
 import { displayOf, matrixOf, norm, product, scaled, times, transposed } from './frames.js';
 import { bodyOf } from './spacecraft.js';
 import { withUnit } from './units.js';
@@ -26,9 +27,10 @@ export class Scene {
     this.runs = runs;
     this.motions = motions;
     this.options = { centre: 'servicer', axes: 'rotating', view: 'both' };
-    this.renderer = new three.WebGLRenderer({ antialias: true, logarithmicDepthBuffer: true, preserveDrawingBuffer: true });
+    const context = contextOf();
+    if (!context) throw new Error('no context of WebGL 2');
+    this.renderer = new three.WebGLRenderer({ canvas: context.canvas, context, logarithmicDepthBuffer: true });
     this.renderer.setPixelRatio(devicePixelRatio);
-    this.renderer.shadowMap.enabled = true;
     element.prepend(this.renderer.domElement);
     this.camera = new three.PerspectiveCamera(kFieldDeg, 1, 0.01, 1e8);
     this.camera.position.set(0.35, 0.45, 1);
@@ -56,6 +58,8 @@ export class Scene {
       this.ghosts.push(ghost);
     }
     this.world.add(this.servicer, this.target, ...this.ghosts);
+    // The faces of a box are in the shadow of no other one.
+    this.renderer.shadowMap.enabled = [this.servicer, this.target].some((body) => body.userData.hasShape);
     this.paths = new three.Group();
     this.world.add(this.paths);
 
@@ -84,7 +88,6 @@ export class Scene {
     this.gridLabel.className = 'gridNote';
     this.element.append(this.gridLabel);
     this.colour();
-    this.rebuildPaths();
     this.resize();
   }
 
@@ -130,19 +133,20 @@ export class Scene {
   /** The place of the target, or of the servicer with the target at the centre, from the target's position in RTN. */
   #placeOf(rho) { return this.options.centre === 'servicer' ? rho : scaled(-1, rho); }
 
-  #points(motion, time, rho, each = () => true) {
-    const points = [];
+  /** Places of the target at the rows with a position, three numbers each. */
+  #points(motion, time, rho) {
+    const points = new Float32Array(3 * time.length);
+    let count = 0;
     for (let k = 0; k < time.length; ++k) {
-      const p = rho.map((column) => column[k]);
-      if (Number.isNaN(p[0]) || !each(k)) continue;
+      if (Number.isNaN(rho[0][k])) continue;
       const frame = this.options.axes === 'rotating' ? undefined : motion.frameAt(time[k]);
-      points.push({ t: time[k], at: vector(this.#toDisplay(frame)(this.#placeOf(p))) });
+      points.set(this.#toDisplay(frame)(this.#placeOf([rho[0][k], rho[1][k], rho[2][k]])), 3 * count++);
     }
-    return points;
+    return points.subarray(0, 3 * count);
   }
 
   #line(points, colour, opacity, dashed = false) {
-    const geometry = new three.BufferGeometry().setFromPoints(points.map((p) => p.at));
+    const geometry = new three.BufferGeometry().setAttribute('position', new three.BufferAttribute(points, 3));
     const line = new three.Line(geometry, dashed ? new three.LineDashedMaterial({ color: cssColour(colour), transparent: true, opacity, dashSize: 1, gapSize: 1 })
                                                  : new three.LineBasicMaterial({ color: cssColour(colour), transparent: true, opacity }));
     line.frustumCulled = false;
@@ -350,7 +354,7 @@ export class Scene {
     this.camera.fov = kFieldDeg;
     let centre, size;
     if (view === 'whole') {
-      const box = new three.Box3().setFromPoints(this.truePoints.map((p) => p.at)).expandByPoint(new three.Vector3());
+      const box = new three.Box3().setFromArray(this.truePoints).expandByPoint(new three.Vector3());
       centre = box.getCenter(new three.Vector3());
       size = 0.62 * box.getSize(new three.Vector3()).length();
     } else if (view === 'servicer' || view === 'target') {

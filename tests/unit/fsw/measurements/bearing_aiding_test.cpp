@@ -217,6 +217,62 @@ TEST_F(BearingAidingScene, LargeInnovationsOfOneSignInflateTheOrbitAndWhiteOnesD
   EXPECT_LT(std::abs(eigenvalues(3)), 1e-9 * eigenvalues(5));
 }
 
+/// Two hours without bearings, then those of a body on the target's orbit, 10 km behind it, for two hours with a burn:
+/// the filter takes its orbit. The one before is kept, and is what the filter itself would have propagated without
+/// bearings.
+TEST_F(BearingAidingScene, TheOrbitBeforeThatOfAnotherBodyIsKeptAndReturns) {
+  watch(240);
+  watch(120, false);
+  const orbit::CartesianState right = target;
+  const auto unaided = std::make_unique<filter::RelativeNavigationFilter>(*filter);
+  target = scene_target(
+      servicer, orbit::roe_of_target(servicer, target).value() + roe_of_metres(0.0, -10000.0, 0.0, 0.0, 0.0, 0.0));
+  const GpsTime since = now;
+  burns.push_back({now + duration_of_seconds(3605), {0.01, -0.02, 0.03}});
+  watch(120);
+  ASSERT_GT(aiding.counters().revisions + aiding.counters().restarts, 0);
+  ASSERT_GT(error() / sigma(), 0.0);
+
+  orbit::CartesianState still = right;
+  for (GpsTime time = since; time < now; time = time + duration_of_seconds(10))
+    still = Propagation(time, scene_earth(), scene_sun()).coast(still, 10.0);
+  target = still;
+  EXPECT_GT(error(), 10.0 * sigma());  // the filter is wrong
+
+  const KeptOrbit& kept = aiding.kept_at_epoch(*filter);
+  ASSERT_TRUE(kept.is_kept());
+  unaided->advance_to(now, burns);
+  const Vector6 difference_m = kA * (kept.roe() - unaided->roe());
+  EXPECT_LT(difference_m.cwiseAbs().maxCoeff(), 0.5);
+  for (int k = 0; k < 6;
+       ++k) {  // more, because accelerations that the filter knows the direction of count in all three
+    const double ratio = std::sqrt(kept.covariance()(k, k) / unaided->roe_covariance()(k, k));
+    EXPECT_GT(ratio, 0.9) << k;
+    EXPECT_LT(ratio, 1.6) << k;
+  }
+
+  aiding.return_to_kept(now, *filter);
+  EXPECT_FALSE(kept.is_kept());
+  EXPECT_TRUE(valid());
+  EXPECT_LT(error(), 4.0 * sigma());
+  EXPECT_EQ(watch(1), BearingEditStatus::kFilter);
+  watch(60);
+  EXPECT_LT(error(), 4.0 * sigma());
+}
+
+TEST_F(BearingAidingScene, AnOrbitIsKeptForHalfADay) {
+  watch(120);
+  KeptOrbit kept;
+  EXPECT_FALSE(kept.target(servicer).ok());
+  kept.keep(*filter);
+  filter->advance_to(now + KeptOrbit::kLongest, {});
+  kept.advance(*filter);
+  EXPECT_TRUE(kept.is_kept());
+  filter->advance_to(filter->epoch() + duration_of_seconds(1), {});
+  kept.advance(*filter);
+  EXPECT_FALSE(kept.is_kept());
+}
+
 TEST_F(BearingAidingScene, ASecondAprioriDoesNotReplaceAnEstimate) {
   watch(60);
   const Vector6 roe = filter->roe();

@@ -150,6 +150,12 @@ std::vector<BadValue> bad_values() {
       {"tracking.code_bias_sigma_m", "from 0 to 100"},
       {"tracking.carrier_wander_sigma_mm", "from 0 to 100"},
       {"tracking.carrier_wander_time_s", "above 0, up to 1000000"},
+      {"tracking.w_code_rate_khz", "from 0 to 10230"},
+      {"tracking.code_wander_l1_zenith_m", "from 0 to 100"},
+      {"tracking.code_wander_l1_horizon_m", "from 0 to 100"},
+      {"tracking.code_wander_l2_zenith_m", "from 0 to 100"},
+      {"tracking.code_wander_l2_horizon_m", "from 0 to 100"},
+      {"tracking.code_wander_time_s", "above 0, up to 1000000"},
       {"start.cold_search_min_s", "from 0 to 3600"},
       {"start.cold_search_max_s", "from 0 to 3600"},
       {"start.reacquisition_min_s", "from 0 to 3600"},
@@ -215,6 +221,7 @@ TEST(BadGnssValue, WordsThatAreNone) {
       {sensor + ".source", "testbed", "the text \"testbed\"", "digital, recorded or rinex"},
       {sensor + ".gps_ephemeris", "rawephemb", "the text \"rawephemb\" (did you mean rawephem?)",
        "rawephem or gpsephem"},
+      {sensor + ".tracking.l1_code", "codeless", "the text \"codeless\"", "ca or p"},
       {sensor + ".start.mode", "lukewarm", "the text \"lukewarm\"", "cold, warm or hot"},
       {sensor + ".ionosphere", "1", "the integer 1", "true or false"},
       {sensor + ".tracking.thermal_noise", "2", "the integer 2", "true or false"},
@@ -253,6 +260,27 @@ TEST(GnssKeys, GoodOnesArriveInSiUnits) {
   EXPECT_EQ(shared.carrier.pair_wait_ns, std::int64_t{7} * 1000000000);
   EXPECT_EQ(shared.crosslink.silence_begin_s, 100.0);
   EXPECT_EQ(shared.crosslink.silence_duration_s, 600.0);
+}
+
+TEST(GnssKeys, OfTheCodeArrive) {
+  using twins::gnss::TrackingSettings;
+  const std::string text = changed(
+      gnss_mission(), kPartner,
+      "partner = \"target\", link_budget = { antenna_pattern = \"./pattern.csv\" }, tracking = { l1_code = \"p\", "
+      "w_code_rate_khz = 500, code_wander_l1_zenith_m = 0.1, code_wander_l1_horizon_m = 0.2, code_wander_l2_zenith_m = "
+      "0.3, code_wander_l2_horizon_m = 0.4, "
+      "code_wander_time_s = 120 }");
+  const auto receiver = sensor_of<GnssSensor>(parse_mission(text, "m.toml")).receiver;
+  EXPECT_EQ(receiver.tracking.l1_code, twins::gnss::L1Code::kP);
+  EXPECT_EQ(receiver.tracking.w_code_rate_khz, 500.0);
+  EXPECT_EQ(receiver.tracking.code_wander_l1, (twins::gnss::CodeWander{0.1, 0.2}));
+  EXPECT_EQ(receiver.tracking.code_wander_l2, (twins::gnss::CodeWander{0.3, 0.4}));
+  EXPECT_EQ(receiver.tracking.code_wander_time_s, 120.0);
+  EXPECT_EQ(receiver.link_budget.antenna_pattern.filename(), "pattern.csv");
+  // Those that a mission omits are the ones without these errors.
+  const auto plain = sensor_of<GnssSensor>(parse_mission(gnss_mission(), "m.toml")).receiver;
+  EXPECT_EQ(plain.tracking, TrackingSettings{});
+  EXPECT_EQ(plain.link_budget, twins::gnss::LinkBudgetSettings{});
 }
 
 }  // namespace

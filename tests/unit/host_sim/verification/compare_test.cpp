@@ -42,6 +42,12 @@ TEST(Compare, NamesAShareThatFell) {
   EXPECT_NE(text_of(comparison).find("75.0 %"), std::string::npos);
 }
 
+TEST(Compare, ComparesNoShareOfARowWithoutVerdict) {
+  Json row = flown_row("a", uniform(4, 1.0), 0);
+  row["achieved"]["of"] = 0;
+  EXPECT_EQ(compare(verification_of({row}), verification_of({row})).tests, 1U);
+}
+
 TEST(Compare, StatesRowsThatCannotBeCompared) {
   const Json earlier = verification_of({unflown_row("a")});
   const Comparison comparison =

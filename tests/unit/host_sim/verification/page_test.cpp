@@ -68,5 +68,14 @@ TEST(VerificationPage, StatesItsCommitAndWhatWasNotFlown) {
   EXPECT_THAT(page, HasSubstr("12.4 mm"));  // of the paper
 }
 
+// A flight without waypoints has nothing to achieve: zero of sixty would read as a failure.
+TEST(VerificationPage, StatesNoShareOfARowWithoutVerdict) {
+  Json row = flown_row("a", {1.0, 2.0, 3.0}, 0);
+  row["achieved"] = {{"count", 0}, {"of", 0}, {"confidence", 0.95}, {"lower", 0.0}};
+  const std::string page = verification_page(verification_of({row}));
+  EXPECT_THAT(page, HasSubstr("| no verdict |"));
+  EXPECT_THAT(page, HasSubstr("achieved: no verdict, for want of waypoints."));
+}
+
 }  // namespace
 }  // namespace vbar::verification

@@ -319,6 +319,63 @@ TEST(TargetTracker, ASatelliteSeenBesideTheTargetIsNotFoundInItsPlace) {
   EXPECT_GT(search_beside_another(without_history, 1).wrong, 0);
 }
 
+/// At 1 km. From the 120th image on the target is hidden for two hours, and navigation follows a body on its orbit, 10
+/// km behind; `is_back`: then it is seen again.
+struct Return {
+  int at = -1;  ///< image in which the replaced orbit returned
+  bool is_right = false;
+};
+
+Return return_from_another(std::uint64_t seed, bool is_back) {
+  SceneSettings scenery = one_kilometre();
+  scenery.seed = seed;
+  scenery.decoys_a_roe_m = {scenery.target_a_roe_m + six(0.0, -10000.0, 0.0, 0.0, 0.0, 0.0)};
+  SceneSettings of_another = scenery;
+  of_another.target_a_roe_m = scenery.decoys_a_roe_m[0];
+  SceneMaker maker(scenery), other_maker(of_another);
+  TargetTracker tracker;
+  for (int k = 0; k < 320; ++k) {
+    Scene scene = maker.next();
+    const Scene other = other_maker.next();
+    const int target = scene.target_index();
+    if (k >= 120 && (k < 240 || !is_back) && target >= 0) {
+      scene.candidates.erase(scene.candidates.begin() + target);
+      scene.source.erase(scene.source.begin() + target);
+    }
+    TrackerInput input = scene.input();
+    if (k >= 140) {
+      input.kept = input.prediction;
+      input.prediction = other.prediction;
+    }
+    const TrackerOutput output = tracker.step(input).value();
+    if (output.is_as_kept) return {k, output.candidate >= 0 && output.candidate == scene.target_index()};
+  }
+  return {};
+}
+
+TEST(TargetTracker, TheTargetWhereAReplacedOrbitPredictsItShowsThatThisWasRight) {
+  for (std::uint64_t seed = 1; seed <= vbar::test::share_under_sanitizers(5); ++seed) {
+    const Return back = return_from_another(seed, true);
+    EXPECT_GE(back.at, 240) << seed;
+    EXPECT_LT(back.at, 265) << seed;
+    EXPECT_TRUE(back.is_right) << seed;
+    EXPECT_EQ(return_from_another(seed, false).at, -1) << seed;
+  }
+}
+
+/// The orbit that was replaced erred by a little: the target moves as both predict, and the new one stays.
+TEST(TargetTracker, AnOrbitThatWasReplacedForASmallChangeDoesNotReturn) {
+  SceneMaker maker(one_kilometre());
+  TargetTracker tracker;
+  for (int k = 0; k < 300; ++k) {
+    const Scene scene = maker.next();
+    TrackerInput input = scene.input();
+    input.kept = input.prediction;
+    input.kept->slopes.head<2>() += Vector2(3e-4, -2e-4);
+    EXPECT_FALSE(tracker.step(input).value().is_as_kept) << k;
+  }
+}
+
 TEST(TargetTracker, WithoutAPredictionTheOnlySatelliteIsTheTarget) {
   SceneMaker maker(clean_scene());
   TargetTracker tracker;
