@@ -8,6 +8,9 @@ namespace {
 
 constexpr int kMaxRevolutions = 30;  // earlier or later
 
+// A burn that is reduced to the maximum is below it, rounding included.
+constexpr double kBelowMaximum = 1.0 - 1e-9;
+
 Duration half(Duration duration) {
   return {duration.ns / 2};
 }
@@ -148,7 +151,7 @@ Plan limited(const Plan& plan, const ThrusterLimits& limits) {
   for (std::size_t k = 0; k < small.count; ++k) {
     Vector3& dv = small.burns[k].dv_rtn;
     const double size = dv.norm();
-    if (size > limits.maximum_dv) dv *= limits.maximum_dv / size;
+    if (size > limits.maximum_dv) dv *= kBelowMaximum * limits.maximum_dv / size;
   }
   return small;
 }
