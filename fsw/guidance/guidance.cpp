@@ -211,7 +211,7 @@ bool Guidance::decision_is_due(GpsTime now, const gnc_configuration& configurati
 }
 
 void Guidance::decide(const gnc_configuration& configuration) {
-  if (goal_.time <= earliest_burn_) return;  // this waypoint cannot be influenced any more
+  if (goal_.time <= earliest_start()) return;  // this waypoint cannot be influenced any more
   const double sigma_m = orbits_.servicer.a * sigma_roe_.maxCoeff();
   const bool too_coarse = configuration.roe_error_threshold_m > 0.0 && sigma_m > configuration.roe_error_threshold_m;
   is_holding_ = !stays_on_plan(configuration, too_coarse) && !solver_fallback(configuration, too_coarse);
