@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "fsw/orbit/rtn.h"
+#include "tests/support/figures.h"
 #include "tests/unit/fsw/measurements/angles_only_scene.h"
 
 namespace vbar::fsw::measurements {
@@ -231,7 +232,6 @@ TEST_F(BearingAidingScene, TheOrbitBeforeThatOfAnotherBodyIsKeptAndReturns) {
   burns.push_back({now + duration_of_seconds(3605), {0.01, -0.02, 0.03}});
   watch(120);
   ASSERT_GT(aiding.counters().revisions + aiding.counters().restarts, 0);
-  ASSERT_GT(error() / sigma(), 0.0);
 
   orbit::CartesianState still = right;
   for (GpsTime time = since; time < now; time = time + duration_of_seconds(10))
@@ -243,7 +243,7 @@ TEST_F(BearingAidingScene, TheOrbitBeforeThatOfAnotherBodyIsKeptAndReturns) {
   ASSERT_TRUE(kept.is_kept());
   unaided->advance_to(now, burns);
   const Vector6 difference_m = kA * (kept.roe() - unaided->roe());
-  EXPECT_LT(difference_m.cwiseAbs().maxCoeff(), 0.5);
+  EXPECT_LT(accuracy::largest_entry(difference_m), 0.5);
   for (int k = 0; k < 6;
        ++k) {  // more, because accelerations that the filter knows the direction of count in all three
     const double ratio = std::sqrt(kept.covariance()(k, k) / unaided->roe_covariance()(k, k));
