@@ -59,8 +59,8 @@ struct TrackingSettings {
   double carrier_wander_time_s = 60.0;    ///< its correlation time
   L1Code l1_code = L1Code::kCa;           ///< code of pseudoranges of L1; its carrier is that of C/A
   double w_code_rate_khz = 0.0;           ///< P(Y) without its encryption W of this chip rate; 0: W is known
-  CodeWander code_wander_l1;              ///< first-order Gauss-Markov error of each satellite's code: multipath;
-  CodeWander code_wander_l2;              ///< L1 with E1 and B1I, and L2
+  CodeWander code_wander_l1{};            ///< first-order Gauss-Markov error of each satellite's code: multipath;
+  CodeWander code_wander_l2{};            ///< L1 with E1 and B1I, and L2
   double code_wander_time_s = 300.0;      ///< their correlation time
   friend bool operator==(const TrackingSettings&, const TrackingSettings&) = default;
 };
