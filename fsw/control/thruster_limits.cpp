@@ -71,7 +71,7 @@ int revolutions_to(int k) {
   return k % 2 == 0 ? -k / 2 : (k + 1) / 2;
 }
 
-/// Divides burn `k` of `plan`; its parts are added to `whole`, which holds all burns that they must keep apart from.
+/// Divides burn `k` of `plan`; its parts are added to `parts`. They keep apart from the other burns of both.
 void divide(const Plan& plan, std::size_t k, const ThrusterLimits& limits, const BurnSpan& span, Plan& parts) {
   const Burn& burn = plan.burns[k];
   const double size = burn.dv_rtn.norm();
