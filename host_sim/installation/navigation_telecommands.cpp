@@ -40,12 +40,12 @@ fsw::Vector6 drawn_roe(const QnsElements& chief_mean, const fsw::orbit::Cartesia
   return roe;
 }
 
-constexpr std::int32_t kCamera = std::int32_t{Use::kUseBearings} + Use::kUseKeypoints;
+constexpr std::int32_t kCameraUses = std::int32_t{Use::kUseBearings} + Use::kUseKeypoints;
 
 /// The spacecraft that a camera navigates to; empty: no camera does.
 std::string observed_by_camera(const Spacecraft& servicer) {
   const auto camera = std::ranges::find_if(
-      servicer.sensors, [](const mission::Sensor& sensor) { return (sensor.settings->navigation & kCamera) != 0; });
+      servicer.sensors, [](const mission::Sensor& sensor) { return (sensor.settings->navigation & kCameraUses) != 0; });
   return camera == servicer.sensors.end() ? std::string() : camera->settings->observed;
 }
 

@@ -42,7 +42,7 @@ function(vbar_unity name)
     string(REGEX REPLACE "\n\\[\\[[a-z_]+\\]\\] " "\n" text "\n${text}")
     string(REGEX REPLACE "[];[]" " " text "${text}")
     string(REGEX MATCHALL "\n[A-Za-z][A-Za-z0-9_:<>,&* ]* [*&]*[A-Za-z0-9_]+ *[=({]" declared "${text}")
-    list(FILTER declared EXCLUDE REGEX "^\nnamespace")
+    list(FILTER declared EXCLUDE REGEX "^\n(namespace |[A-Z_]+\\()")  # nor macros: tests
     list(TRANSFORM declared REPLACE "^.*[ *&]([A-Za-z0-9_]+) *[=({]$" "\\1")
     string(REGEX MATCHALL "\nusing [A-Za-z0-9_:]+::[A-Za-z0-9_]+ " origins "${text}")
     set(taken ${origins})

@@ -119,11 +119,7 @@ void TargetTracker::select_eligible(const TrackerInput& input) {
       const double square = s(1, 1) * offset.x() * offset.x() - 2.0 * s(0, 1) * offset.x() * offset.y() +
                             s(0, 0) * offset.y() * offset.y();
       is_in_gate = square <= settings_.prediction_gate * determinant;
-      const double around = settings_.surroundings * settings_.surroundings;
-      const bool is_near_kept =
-          work_.kept_prediction &&
-          (measurement.value().slopes - work_.kept_prediction->slopes.head<2>()).squaredNorm() < around;
-      if (!is_in_gate && !is_near_kept && !(offset.squaredNorm() < around)) continue;
+      if (!is_in_gate && !is_in_surroundings(measurement.value().slopes)) continue;
     }
     Eligible& eligible = work_.eligible[work_.eligible_count++];
     eligible.measurement = measurement.value();
@@ -141,6 +137,22 @@ void TargetTracker::select_eligible(const TrackerInput& input) {
   about_prediction.diagonal().array() += settings_.slope_floor * settings_.slope_floor;
   work_.is_prediction_narrow =
       work_.has_prediction && is_narrow(settings_.prediction_gate, determinant_of(about_prediction));
+}
+
+/// Returns true about the predictions, where objects outside their gates are tracked too.
+bool TargetTracker::is_in_surroundings(const Vector2& slopes) const {
+  const double around = settings_.surroundings * settings_.surroundings;
+  return (slopes - work_.prediction.slopes.head<2>()).squaredNorm() < around ||
+         (work_.kept_prediction && (slopes - work_.kept_prediction->slopes.head<2>()).squaredNorm() < around);
+}
+
+/// Returns true if an object of the hypothesis would be a candidate of this image. Another satellite can leave the
+/// surroundings of the target, and return half an orbit later: it is not missed meanwhile.
+bool TargetTracker::is_expected(const Hypothesis& hypothesis) const {
+  if (!(work_.detection_probability > kExpected)) return false;
+  if (!work_.has_prediction || !hypothesis.established || hypothesis.track == target_track_) return true;
+  const SlopeState state = slope_state(hypothesis.motion, work_.view, work_.bend, work_.bend_rate);
+  return is_in_surroundings(state.slopes.head<2>());
 }
 
 /// Returns true if few other objects are to be expected in a gate with this determinant of the covariance.
@@ -218,13 +230,13 @@ Hypothesis TargetTracker::child_of(const Branch& branch) {
     child = hypotheses_[static_cast<std::size_t>(branch.parent)];
   }
   const bool is_hit = branch.candidate >= 0;
-  const bool is_expected = work_.detection_probability > kExpected;
+  const bool is_missed = !is_hit && is_expected(child);
   child.score = branch.score;
   std::copy(child.history.begin(), child.history.end() - 1, child.history.begin() + 1);
   child.history[0] = kMissed;
-  if (is_hit || is_expected) child.recent = (child.recent << 1U) | (is_hit ? 1U : 0U);
+  if (is_hit || is_missed) child.recent = (child.recent << 1U) | (is_hit ? 1U : 0U);
   if (!is_hit) {
-    if (is_expected) ++child.images_since_hit;
+    if (is_missed) ++child.images_since_hit;
     // Eclipses count as gaps whether or not the target was expected.
     int unseen = 0;
     while (unseen < static_cast<int>(kHistory) && child.history[static_cast<std::size_t>(unseen)] == kMissed) ++unseen;

@@ -137,6 +137,8 @@ class TargetTracker {
 
   [[nodiscard]] double gain_of(const Hypothesis& parent, const Innovation& innovation, const Eligible& candidate) const;
   [[nodiscard]] Hypothesis child_of(const Branch& branch);
+  [[nodiscard]] bool is_in_surroundings(const Vector2& slopes) const;
+  [[nodiscard]] bool is_expected(const Hypothesis& hypothesis) const;
   [[nodiscard]] bool is_narrow(double gate, double determinant) const;
   void erase_marked();
   [[nodiscard]] bool is_rival(const Hypothesis& h, const Hypothesis& target) const;
