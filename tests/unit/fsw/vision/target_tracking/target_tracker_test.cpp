@@ -325,8 +325,9 @@ TEST(TargetTracker, ASatelliteSeenBesideTheTargetIsNotFoundInItsPlace) {
   EXPECT_GT(search_beside_another(fifty_kilometres_with_a_burn(), without_history, 1).wrong, 0);
 }
 
-/// At 1 km the relative eccentricity takes the target 3 degrees away from a body 10 km behind it, out of the surroundings
-/// in which others are tracked, twice an orbit. Wherever in its orbit it is hidden, the other one is known.
+/// At 1 km the relative eccentricity takes the target 3 degrees away from a body 10 km behind it, out of the
+/// surroundings in which others are tracked, twice an orbit. Wherever in its orbit it is hidden, the other one is
+/// known.
 TEST(TargetTracker, ASatelliteThatLeavesTheSurroundingsOfTheTargetIsNotForgotten) {
   SceneSettings scenery = one_kilometre();
   scenery.target_a_roe_m = six(0.0, -1000.0, 0.0, 60.0, 0.0, 20.0);
