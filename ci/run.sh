@@ -5,10 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 ci/install.sh fly
 # Only what is flown here; cmake --build --preset host builds the other programs too.
-cmake --preset host --log-level=WARNING -DVBAR_TESTS=OFF
-cmake --build --preset host --target vbar
-cmake --preset zynq --log-level=WARNING
-cmake --build --preset zynq --target vbar_zynq7000
+ci/build.sh host:vbar zynq:vbar_zynq7000
 vbar=build/host/vbar
 "$vbar" run missions/ideal_navigation.toml --force --out runs/ideal_navigation-sil
 "$vbar" run missions/ideal_navigation.toml --set flight_computer.target=zynq_qemu --force --out runs/ideal_navigation-pil

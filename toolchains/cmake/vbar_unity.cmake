@@ -1,6 +1,7 @@
-# Unity builds (VBAR_UNITY=ON) for cold builds, where no compiler cache has the objects: the sources of a folder are compiled
-# together, so that the headers and templates that several of them use are read and instantiated once. An edit then
-# compiles a whole folder, so that it is off by default.
+# Unity builds (VBAR_UNITY=ON) for cold builds, where no compiler cache has the objects: the sources of a folder of host code or
+# of tests are compiled together, so that the headers and templates that several of them use are read and instantiated once. An
+# edit then compiles a whole folder, so that it is off by default. Flight code always has the same units: its calls between
+# them are what mutants (ci/mutate.py) are made of.
 option(VBAR_UNITY "compile the sources of a folder together: half the time for a cold build, more for an edit" OFF)
 
 # Sources of one unit at most, so that both processors of a small computer have work and neither runs out of memory.
@@ -48,6 +49,7 @@ function(vbar_unity name)
     set(taken ${origins})
     list(TRANSFORM taken REPLACE "^.*::([A-Za-z0-9_]+) $" "\\1")
     get_filename_component(folder ${source} DIRECTORY)
+    file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${folder})  # the same names in every checkout
     string(MD5 folder ${folder})
     set(number 0)
     while(TRUE)
