@@ -179,18 +179,15 @@ bool minimise(const BoardDesign& board, const LensCalibration& lens, const std::
   return true;
 }
 
-/// The plane's tilt reversed about the line of sight, its turn about it kept: the shortest rotation from its normal to
-/// the normal's mirror image, by the quaternion (1 + a.b, a x b) of unit vectors; about the line of sight where both
-/// are opposite.
+/// The plane's tilt reversed about the line of sight, its turn about it kept: its normal rotated past the line of sight
+/// by the angle between both, the quaternion (n.s, n x s).
 Eigen::Isometry3d with_tilt_reversed(const Eigen::Isometry3d& T) {
   const Vector3 sight = T.translation().normalized();
   const Vector3 normal = T.linear().col(2);
-  const Vector3 mirrored = 2.0 * normal.dot(sight) * sight - normal;
-  const double real = 1.0 + normal.dot(mirrored);
-  const Vector3 axis = real > 1e-9 ? Vector3(normal.cross(mirrored)) : sight;
-  const Eigen::Quaterniond turn(real, axis.x(), axis.y(), axis.z());
+  const Vector3 axis = normal.cross(sight);
+  const Eigen::Quaterniond turn(normal.dot(sight), axis.x(), axis.y(), axis.z());
   Eigen::Isometry3d result = T;
-  result.linear() = turn.normalized().toRotationMatrix() * T.linear();
+  result.linear() = turn.toRotationMatrix() * T.linear();
   return result;
 }
 
