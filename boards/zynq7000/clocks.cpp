@@ -1,6 +1,5 @@
 #include "boards/zynq7000/clocks.h"
 
-#include "boards/zynq7000/clock_divisors.h"
 #include "boards/zynq7000/memory_map.h"
 
 namespace vbar::boards::zynq7000 {

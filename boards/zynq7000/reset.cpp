@@ -1,9 +1,8 @@
-#include "boards/zynq7000/reset.h"
-
 #include <tuple>
 
 #include "boards/zynq7000/cpu.h"
 #include "boards/zynq7000/memory_map.h"
+#include "boards/zynq7000/watchdog.h"
 
 namespace vbar::boards::zynq7000 {
 namespace {

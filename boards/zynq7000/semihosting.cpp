@@ -1,6 +1,6 @@
-#include "boards/zynq7000/semihosting.h"
-
 #include <array>
+
+#include "boards/zynq7000/faults.h"
 
 namespace vbar::boards::zynq7000 {
 namespace {

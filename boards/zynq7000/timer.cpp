@@ -1,6 +1,5 @@
 #include "boards/zynq7000/timer.h"
 
-#include "boards/zynq7000/cycle_count.h"
 #include "boards/zynq7000/memory_map.h"
 
 namespace vbar::boards::zynq7000 {

@@ -5,7 +5,6 @@
 #include "boards/zynq7000/console.h"
 #include "boards/zynq7000/interrupts.h"
 #include "boards/zynq7000/memory_map.h"
-#include "boards/zynq7000/reset.h"
 #include "boards/zynq7000/timer.h"
 
 namespace vbar::boards::zynq7000 {

@@ -15,7 +15,7 @@
 #include <unistd.h>
 
 #include "hil_drivers/wire/emulator_files.h"
-#include "host_sim/files/error_lines.h"
+#include "host_sim/files/text_lines.h"
 #include "host_sim/mission/mission_error.h"
 
 namespace vbar::emulators {

@@ -17,7 +17,7 @@
 #include "emulators/grand/generator/vehicle.h"
 #include "emulators/grand/receiver/receiver.h"
 #include "emulators/grand/samples/gnss_sdr_measurements.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 
 namespace vbar::grand::bench {
 namespace {

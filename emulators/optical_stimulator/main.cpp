@@ -10,7 +10,7 @@
 
 #include "emulators/common/emulator_program.h"
 #include "emulators/optical_stimulator/emulator.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 
 namespace bench = vbar::optical_stimulator::bench;
 

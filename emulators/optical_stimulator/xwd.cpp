@@ -1,10 +1,10 @@
-#include "emulators/optical_stimulator/xwd.h"
-
 #include <array>
 #include <cstring>
 #include <stdexcept>
 
 #include <fmt/format.h>
+
+#include "emulators/optical_stimulator/screen.h"
 
 namespace vbar::optical_stimulator::bench {
 namespace {

@@ -3,9 +3,9 @@
 #include <span>
 
 #include "fsw/control/arrival.h"
-#include "fsw/control/check_problem.h"
 #include "fsw/control/correction.h"
 #include "fsw/control/near_circular.h"
+#include "fsw/control/plan.h"
 #include "fsw/control/tangential.h"
 #include "fsw/math/math.h"
 

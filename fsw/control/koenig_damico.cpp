@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "fsw/control/arrival.h"
-#include "fsw/control/check_problem.h"
+#include "fsw/control/plan.h"
 
 namespace vbar::fsw::control {
 namespace {

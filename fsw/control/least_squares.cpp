@@ -3,7 +3,7 @@
 #include <array>
 
 #include "fsw/control/arrival.h"
-#include "fsw/control/check_problem.h"
+#include "fsw/control/plan.h"
 #include "fsw/math/cholesky.h"
 #include "fsw/math/math.h"
 #include "fsw/math/symmetric_eigen.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "fsw/control/primer_extract.h"
+#include "fsw/control/primer_program.h"
 #include "fsw/math/cholesky.h"
 #include "fsw/math/math.h"
 

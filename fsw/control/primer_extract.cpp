@@ -1,8 +1,7 @@
-#include "fsw/control/primer_extract.h"
-
 #include <algorithm>
 #include <utility>
 
+#include "fsw/control/primer_program.h"
 #include "fsw/math/cholesky.h"
 #include "fsw/math/math.h"
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "fsw/filter/dynamics.h"
+#include "fsw/filter/propagation.h"
 #include "fsw/math/cholesky.h"
-#include "fsw/orbit/constants.h"
+#include "fsw/orbit/gravity_field.h"
 
 namespace vbar::fsw::filter {
 namespace {

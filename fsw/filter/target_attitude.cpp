@@ -5,7 +5,7 @@
 #include "fsw/estimation/unscented.h"
 #include "fsw/math/cholesky.h"
 #include "fsw/math/math.h"
-#include "fsw/orbit/constants.h"
+#include "fsw/orbit/gravity_field.h"
 
 namespace vbar::fsw::filter {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <span>
 
-#include "fsw/filter/dynamics.h"
+#include "fsw/filter/propagation.h"
 #include "fsw/math/math.h"
 #include "fsw/messaging/message_fields.h"
 #include "fsw/orbit/finite_burn.h"

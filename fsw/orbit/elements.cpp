@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "fsw/math/math.h"
-#include "fsw/orbit/constants.h"
+#include "fsw/orbit/gravity_field.h"
 #include "fsw/orbit/roe.h"
 
 namespace vbar::fsw::orbit {

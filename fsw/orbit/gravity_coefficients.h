@@ -1,7 +1,7 @@
 #pragma once
 // Stokes coefficients of the on-board gravity field: GGM05S (Tapley, Flechtner, Bettadpur, Watkins 2013) to degree and
 // order 20, fully normalised (geodesy's 4-pi normalisation, no Condon-Shortley phase), zero-tide; the numbers of
-// data/gravity/ggm05s_120.txt, which a test holds them to. Its GM and radius are those of constants.h.
+// data/gravity/ggm05s_120.txt, which a test holds them to. Its GM and radius are those of gravity_field.h.
 
 #include <array>
 #include <cstddef>

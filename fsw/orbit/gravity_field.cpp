@@ -1,7 +1,6 @@
 #include "fsw/orbit/gravity_field.h"
 
 #include "fsw/math/math.h"
-#include "fsw/orbit/constants.h"
 #include "fsw/orbit/gravity_coefficients.h"
 
 namespace vbar::fsw::orbit {

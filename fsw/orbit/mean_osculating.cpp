@@ -1,7 +1,7 @@
 #include "fsw/orbit/mean_osculating.h"
 
 #include "fsw/math/math.h"
-#include "fsw/orbit/constants.h"
+#include "fsw/orbit/gravity_field.h"
 #include "fsw/orbit/roe.h"
 
 // Brouwer's first-order formulas are written with e, w and M, which are not defined on a circular orbit. The quantities

@@ -1,7 +1,7 @@
 #include "fsw/orbit/propagate.h"
 
 #include "fsw/math/math.h"
-#include "fsw/orbit/constants.h"
+#include "fsw/orbit/gravity_field.h"
 
 namespace vbar::fsw::orbit {
 

@@ -11,7 +11,7 @@
 #include "fsw/core/result.h"
 #include "fsw/core/types.h"
 #include "fsw/orbit/elements.h"
-#include "fsw/safety/drift_probability.h"
+#include "fsw/safety/collision_probability.h"
 
 namespace vbar::fsw::safety {
 

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "fsw/packets/messages.h"
-#include "host_sim/mission/spacecraft_number.h"
+#include "host_sim/mission/mission.h"
 
 namespace vbar::external {
 namespace {

@@ -17,7 +17,7 @@
 #include "hil_drivers/external/external_truth.h"
 #include "host_sim/io/byte_channel.h"
 #include "host_sim/io/child_process.h"
-#include "host_sim/mission/udp_address.h"
+#include "host_sim/mission/mission.h"
 #include "pil_bridge/remote_computer.h"
 #include "pil_bridge/transport.h"
 

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "fsw/orbit/constants.h"
+#include "fsw/orbit/gravity_field.h"
 #include "fsw/orbit/rtn.h"
 #include "hil_drivers/external/exchange.h"
 #include "host_sim/truth/orbital_motion.h"

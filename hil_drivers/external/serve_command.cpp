@@ -9,7 +9,7 @@
 #include "hil_drivers/external/source_server.h"
 #include "host_sim/installation/sensor_kinds.h"
 #include "host_sim/io/byte_channel.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/mission/load.h"
 #include "host_sim/simulation/exit_codes.h"
 #include "host_sim/simulation/flight_computer.h"

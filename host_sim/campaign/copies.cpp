@@ -13,7 +13,7 @@
 #include "host_sim/files/output_file.h"
 #include "host_sim/files/own_program.h"
 #include "host_sim/installation/sensor_kinds.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/report/csv_table.h"
 #include "host_sim/simulation/exit_codes.h"
 #include "host_sim/simulation/recorded_mission.h"

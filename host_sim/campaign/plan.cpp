@@ -15,7 +15,7 @@
 #include "host_sim/files/data_stream.h"
 #include "host_sim/files/output_file.h"
 #include "host_sim/installation/sensor_kinds.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/mission/load.h"
 #include "host_sim/mission/mission_document.h"
 #include "host_sim/mission/mission_error.h"

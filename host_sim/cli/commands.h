@@ -6,6 +6,10 @@
 #include <string>
 #include <vector>
 
+namespace CLI {
+class App;
+}
+
 namespace vbar::app {
 
 struct RunOptions {
@@ -91,5 +95,25 @@ int explain_command(const std::vector<std::string>& word, bool markdown);
 
 /// The missions of a folder, or one by its name or file. Empty: those of mission::missions_directory().
 int missions_command(const std::filesystem::path& folder_or_mission);
+
+/// Adds `vbar fit`, an orbit fitted to the positions of a file with the forces of a mission; when it was chosen,
+/// `exit_code` is its exit code.
+void add_fit_command(CLI::App& program, int& exit_code);
+
+struct StarsOptions {
+  std::vector<std::filesystem::path> images;
+  double focal_length_px = 0.0;
+  double search_percent = 0.0;             ///< focal lengths about the given one that are tried
+  std::vector<double> principal_point_px;  ///< x, y; empty: middle of the image
+  std::vector<double> distortion;          ///< k1, k2, p1, p2, k3; empty: none
+  double centroid_floor_px = 0.3;
+  double detection_sigmas = 5.0;
+  std::string utc;              ///< of the images, for aberration; empty: left out
+  bool calibrate = false;       ///< the lens is fitted to the stars of all images
+  std::filesystem::path table;  ///< CSV of the stars; empty: none
+};
+
+/// Attitude of a camera by its images of stars, and its lens. kFailed if an image is not identified.
+int stars_command(const StarsOptions& options);
 
 }  // namespace vbar::app

@@ -1,5 +1,3 @@
-#include "host_sim/cli/fit_command.h"
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -11,12 +9,14 @@
 #include <utility>
 #include <vector>
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include "host_sim/cli/command_line.h"
+#include "host_sim/cli/commands.h"
 #include "host_sim/files/text_lines.h"
 #include "host_sim/installation/sensor_kinds.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/mission/load.h"
 #include "host_sim/orbit_files/orbit_file.h"
 #include "host_sim/orbit_fit/record.h"

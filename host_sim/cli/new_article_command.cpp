@@ -9,7 +9,7 @@
 
 #include "host_sim/cli/commands.h"
 #include "host_sim/files/text_lines.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/simulation/exit_codes.h"
 
 namespace vbar::app {

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "host_sim/cli/commands.h"
-#include "host_sim/files/error_lines.h"
+#include "host_sim/files/text_lines.h"
 #include "host_sim/installation/sensor_kinds.h"
 #include "host_sim/mission/load.h"
 #include "host_sim/mission/name_search.h"

@@ -12,7 +12,7 @@
 #include "host_sim/cli/recorded_flight.h"
 #include "host_sim/cli/replay_input.h"
 #include "host_sim/installation/sensor_kinds.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/report/run_folder.h"
 #include "host_sim/simulation/flight_computer.h"
 #include "host_sim/simulation/recorded_mission.h"

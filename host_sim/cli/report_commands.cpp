@@ -11,10 +11,10 @@
 
 #include "host_sim/cli/commands.h"
 #include "host_sim/cli/verdicts.h"
-#include "host_sim/files/error_lines.h"
 #include "host_sim/files/output_file.h"
+#include "host_sim/files/text_lines.h"
 #include "host_sim/installation/sensor_kinds.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/report/run_folder.h"
 #include "host_sim/report/sections/comparison.h"
 #include "host_sim/report/sections/html_report.h"
@@ -23,7 +23,6 @@
 #include "host_sim/sensors/installed_testbeds.h"
 #include "host_sim/simulation/exit_codes.h"
 #include "host_sim/simulation/recorded_mission.h"
-#include "host_sim/view/propagation_page.h"
 #include "host_sim/view/view_page.h"
 
 namespace vbar::app {

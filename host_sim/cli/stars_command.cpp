@@ -1,5 +1,3 @@
-#include "host_sim/cli/stars_command.h"
-
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -8,13 +6,13 @@
 #include <Eigen/Geometry>
 #include <fmt/core.h>
 
-#include "host_sim/files/error_lines.h"
+#include "host_sim/cli/commands.h"
 #include "host_sim/files/output_file.h"
+#include "host_sim/files/text_lines.h"
 #include "host_sim/simulation/exit_codes.h"
 #include "host_sim/star_images/grey_image.h"
-#include "host_sim/star_images/lens_calibration.h"
 #include "host_sim/star_images/star_fix.h"
-#include "host_sim/truth/earth/earth_velocity.h"
+#include "host_sim/truth/earth/sun_moon.h"
 #include "host_sim/truth/earth/time_scales.h"
 
 namespace vbar::app {

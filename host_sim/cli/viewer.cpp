@@ -11,8 +11,8 @@
 #include <spawn.h>
 #include <unistd.h>
 
-#include "host_sim/files/error_lines.h"
 #include "host_sim/files/own_program.h"
+#include "host_sim/files/text_lines.h"
 #include "host_sim/simulation/exit_codes.h"
 
 namespace vbar::app {

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 #include <string_view>
 
@@ -261,6 +262,14 @@ void TextLines::refuse(std::string_view expected) const {
 void TextLines::refuse(std::string_view found, std::string_view expected) const {
   throw FormatError(
       printable(fmt::format("{}:{}: found {}, expected {}", file_, std::max(number_, 1), found, expected)));
+}
+
+void print_error(std::string_view program, std::string_view message) {
+  static_cast<void>(std::fputs(fmt::format("{}: {}\n", program, printable(message)).c_str(), stderr));
+}
+
+std::string parse_error_text(std::string_view message) {
+  return fmt::format("{}\nRun with --help for more information.\n", printable(message));
 }
 
 }  // namespace vbar::files

@@ -3,12 +3,45 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "fsw/gnss/differential.h"
+#include "fsw/packets/messages.h"
+#include "host_sim/twins/packet_log.h"
 
 namespace vbar::flown_gnss {
+
+LoggedReceiver::LoggedReceiver(const std::filesystem::path& log, std::uint8_t number, fsw::Duration period)
+    : period_(period) {
+  for (const twins::PacketRecord& record : twins::read_packet_log(log).records) {
+    if (!record.to_flight || record.packet.empty()) continue;
+    const auto packet = fsw::packets::parse_packet(record.packet);
+    if (!packet.ok() || packet.value().header.spacecraft != number) continue;
+    const auto message = fsw::packets::decode<gnss_bytes>(packet.value());
+    if (!message.ok()) continue;
+    constexpr auto kCapacity = static_cast<std::int32_t>(sizeof message.value().data);
+    const auto count = std::clamp<std::int32_t>(message.value().count, 0, kCapacity);
+    std::vector<std::uint8_t>& bytes = bytes_[packet.value().header.time];
+    bytes.insert(bytes.end(), message.value().data, message.value().data + count);
+  }
+  if (bytes_.empty())
+    throw std::runtime_error(
+        fmt::format("{}: found no bytes of a receiver of spacecraft {}, expected packets of type gnss_bytes",
+                    log.string(), number));
+}
+
+twins::gnss::ReceiverOutput LoggedReceiver::output_at(const twins::gnss::BodyTruth& truth) {
+  twins::gnss::ReceiverOutput output;
+  const auto end = bytes_.lower_bound(truth.time + period_);
+  for (auto one = bytes_.lower_bound(truth.time); one != end; ++one)
+    output.bytes.insert(output.bytes.end(), one->second.begin(), one->second.end());
+  return output;
+}
+
 namespace {
 
 using fsw::Vector3;
@@ -87,6 +120,86 @@ FlownResult fly(GivenOrbit& orbit, twins::gnss::ReceiverBytes& receiver, const F
   result.signals.finish();
   result.counters = navigation.counters();
   return result;
+}
+
+namespace {
+
+constexpr std::size_t kFewestValues = 100;
+
+class Figures {
+ public:
+  Figures(const FlownResult& flown, const FlownResult& twin) : flown_(flown), twin_(twin) {}
+
+  template <class Figure>
+  void add(const std::string& name, std::size_t count, const Figure& figure) {
+    figures_.push_back({name, figure(flown_), figure(twin_), count});
+  }
+
+  /// `bins_of`: of a result; `scale`: from m to the unit of `name`.
+  template <class BinsOf>
+  void add_bins(const std::string& name, double scale, const BinsOf& bins_of) {
+    for (std::size_t k = 0; k < kElevationBins; ++k) {
+      const ElevationBin &flown = bins_of(flown_)[k], &twin = bins_of(twin_)[k];
+      if (flown.count < kFewestValues || twin.count < kFewestValues) continue;
+      const int from_deg = kFirstElevation_deg + kBinWidth_deg * static_cast<int>(k);
+      figures_.push_back({fmt::format("{}, {} to {} deg", name, from_deg, from_deg + kBinWidth_deg),
+                          scale * flown.sigma(), scale * twin.sigma(), flown.count});
+    }
+    const ElevationBin flown = sum_of(bins_of(flown_)), twin = sum_of(bins_of(twin_));
+    figures_.push_back({name + ", all elevations", scale * flown.sigma(), scale * twin.sigma(), flown.count});
+  }
+
+  template <class CorrelationOf>
+  void add_correlation(const std::string& name, double interval_s, const CorrelationOf& correlation_of) {
+    const std::size_t count = correlation_of(flown_).pairs[0];
+    for (const std::size_t lag : {1, 6, 30})
+      add(fmt::format("{}, correlation after {:g} s", name, interval_s * static_cast<double>(lag)), count,
+          [&](const FlownResult& result) { return correlation_of(result).at(lag); });
+    add(name + ", correlation time beside white noise, s", count, [&](const FlownResult& result) {
+      return interval_s * correlation_of(result).time_beside_white().value_or(0.0);
+    });
+  }
+
+  [[nodiscard]] std::vector<ComparedFigure> take() { return std::move(figures_); }
+
+ private:
+  const FlownResult& flown_;
+  const FlownResult& twin_;
+  std::vector<ComparedFigure> figures_;
+};
+
+ErrorSums all_hours(const FlownResult& result) {
+  return result.errors.of(0, result.errors.hours().size());
+}
+
+}  // namespace
+
+std::vector<ComparedFigure> compare(const FlownResult& flown, const FlownResult& twin) {
+  Figures figures(flown, twin);
+  const std::size_t epochs = flown.epochs;
+  figures.add("own orbit, m rms 3D", epochs, [](const FlownResult& r) { return all_hours(r).rms_m(); });
+  figures.add("NEES of its position", epochs, [](const FlownResult& r) { return all_hours(r).mean_nees(); });
+  figures.add("single points, m rms 3D", epochs, [](const FlownResult& r) { return all_hours(r).point_rms_m(); });
+  figures.add("satellites of an epoch", epochs,
+              [](const FlownResult& r) { return static_cast<double>(r.satellites) / static_cast<double>(r.epochs); });
+  constexpr double kMillimetres = 1e3;
+  figures.add_bins("range, m", 1.0, [](const FlownResult& r) -> const ElevationBins& { return r.ranges; });
+  figures.add_bins("code L1, m", 1.0,
+                   [](const FlownResult& r) -> const ElevationBins& { return r.signals.code_l1().bins; });
+  figures.add_bins("code L2, m", 1.0,
+                   [](const FlownResult& r) -> const ElevationBins& { return r.signals.code_l2().bins; });
+  figures.add_bins("carriers, mm", kMillimetres,
+                   [](const FlownResult& r) -> const ElevationBins& { return r.signals.carrier(); });
+  const double interval_s = flown.signals.interval_s();
+  const auto add_correlations = [&](const std::string& name, const auto& noise_of) {
+    figures.add_correlation(name, interval_s,
+                            [&](const FlownResult& r) -> const Correlation& { return noise_of(r).correlation; });
+    figures.add_correlation(name + " above 30 deg", interval_s,
+                            [&](const FlownResult& r) -> const Correlation& { return noise_of(r).high_correlation; });
+  };
+  add_correlations("code L1", [](const FlownResult& r) -> const SignalNoise& { return r.signals.code_l1(); });
+  add_correlations("code L2", [](const FlownResult& r) -> const SignalNoise& { return r.signals.code_l2(); });
+  return figures.take();
 }
 
 }  // namespace vbar::flown_gnss

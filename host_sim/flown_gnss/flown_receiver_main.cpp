@@ -11,14 +11,11 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "host_sim/files/error_lines.h"
 #include "host_sim/files/output_file.h"
 #include "host_sim/files/text_lines.h"
-#include "host_sim/flown_gnss/comparison.h"
 #include "host_sim/flown_gnss/flown_receiver.h"
-#include "host_sim/flown_gnss/logged_receiver.h"
 #include "host_sim/installation/sensor_kinds.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/sensors/gnss/gnss_kind.h"
 #include "host_sim/truth/force_list.h"
 #include "host_sim/twins/gnss/gnss_receiver.h"

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "fsw/gnss/constants.h"
-#include "fsw/orbit/constants.h"
+#include "fsw/orbit/gravity_field.h"
 #include "fsw/orbit/rtn.h"
 
 namespace vbar::flown_gnss {

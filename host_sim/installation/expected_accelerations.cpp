@@ -7,7 +7,7 @@
 
 #include "fsw/orbit/propagate.h"
 #include "host_sim/installation/navigation_telecommands.h"
-#include "host_sim/mission/process_noise_keys.h"
+#include "host_sim/mission/mission.h"
 #include "host_sim/truth/earth/earth_rotation.h"
 #include "host_sim/truth/forces/drag_force.h"
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "host_sim/installation/navigation_telecommands.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/mission/mission.h"
 #include "host_sim/sensors/camera/camera_kind.h"
 #include "host_sim/sensors/gnss/gnss_kind.h"

@@ -12,6 +12,12 @@
 
 namespace vbar::mission {
 
+// Location of the project's data files.
+
+/// Returns $VBAR_DATA if set, else the data folder of the source tree this program was built from. Throws
+/// std::runtime_error that names the folder if it does not exist.
+std::filesystem::path data_directory();
+
 /// Returns a file of the data folder or, if it begins with "./" or "../", relative to the mission file; an absolute
 /// path stays as it is, and so does one of the `words`, which name no file. On the command line (--set) a relative path
 /// is one from the working directory, if that has such a file. Throws MissionError for an empty text.

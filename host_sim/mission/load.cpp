@@ -9,11 +9,10 @@
 #include <string_view>
 
 #include "host_sim/files/data_stream.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/mission/mission_document.h"
 #include "host_sim/mission/name_search.h"
 #include "host_sim/mission/read_sections.h"
-#include "host_sim/mission/rtn_waypoints.h"
 #include "host_sim/mission/toml_file.h"
 
 namespace vbar::mission {

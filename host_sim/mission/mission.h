@@ -1,5 +1,5 @@
 #pragma once
-// [[limit]] of a mission, and [[pass]] of a campaign: what a number of the summary must keep.
+// A mission as its file states it, section by section (docs/keys.md).
 
 #include <array>
 #include <cstddef>
@@ -26,11 +26,29 @@
 #include "host_sim/engine/link_model.h"
 #include "host_sim/mission/attitude.h"
 #include "host_sim/mission/mission_error.h"
-#include "host_sim/mission/udp_address.h"
 #include "host_sim/truth/truth_settings.h"
 #include "host_sim/twins/thruster_properties.h"
 
 namespace vbar::mission {
+
+// Numbers of spacecraft in packet headers, mission::Spacecraft::number.
+
+inline constexpr int kMaxSpacecraftNumber = 255;
+
+/// Number of a spacecraft beyond that range. It has neither flight computer nor sensors.
+inline constexpr std::uint8_t kNoSpacecraftNumber = 0;
+
+// An address of UDP in a mission file: "127.0.0.1:5005".
+
+class TableReader;
+
+struct UdpAddress {
+  std::string host;  ///< IPv4
+  std::uint16_t port = 0;
+};
+
+/// Returns the address under a key; port 0 without the key. Throws MissionError for anything else.
+[[nodiscard]] UdpAddress read_udp_address(const TableReader& section, const std::string& key);
 
 /// Limits the number with a dotted key of the summary, e.g. waypoints.10.navigation_error_m. At least one of both
 /// bounds is stated.
@@ -421,5 +439,21 @@ constexpr std::string_view name_in(const Names<Enum, N>& names, Enum value) {
 [[nodiscard]] vbar::waypoint_table waypoint_table_of(const Mission& mission);
 
 [[nodiscard]] vbar::mode_command mode_command_of(const Mission& mission);
+
+// Keys of [navigation] by which the process noise of the relative orbit follows from physics
+// (host_sim/installation/expected_accelerations.h).
+
+/// Bounds of a surface coefficient times area over mass, m^2/kg.
+struct SurfaceBounds {
+  double min_m2_per_kg = 0.0;
+  double max_m2_per_kg = 0.0;
+};
+
+struct ProcessNoiseKeys final : SharedSettings {
+  bool are_stated = false;                        ///< the file states process noise or its upper limit: they are kept
+  std::optional<SurfaceBounds> target_drag;       ///< as known before the flight; empty: half to one and a half
+  std::optional<SurfaceBounds> target_radiation;  ///< of the nominal value of the spacecraft that is observed
+  std::vector<std::string> without_effect;        ///< a sentence on each key that no source of the mission uses
+};
 
 }  // namespace vbar::mission

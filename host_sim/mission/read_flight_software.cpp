@@ -3,9 +3,7 @@
 #include <string>
 
 #include "host_sim/mission/mission.h"
-#include "host_sim/mission/process_noise_keys.h"
 #include "host_sim/mission/read_sections.h"
-#include "host_sim/mission/rtn_waypoints.h"
 
 namespace vbar::mission {
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "fsw/orbit/rtn.h"
 #include "host_sim/mission/mission.h"
 #include "host_sim/mission/sensor_reader.h"
 #include "host_sim/mission/table_reader.h"
@@ -87,5 +88,17 @@ class SpacecraftGroup {
   int count_;
   TableReader spacing_;
 };
+
+// Waypoints that are stated as position and velocity in RTN, converted to the mean relative orbital elements that the
+// flight software flies to.
+
+/// Returns the state of the target in the servicer's RTN that a waypoint states, if it does. Throws MissionError for an
+/// invalid one, and for one that states elements too.
+[[nodiscard]] std::optional<fsw::orbit::RelativeState> target_in_rtn(const TableReader& waypoint);
+
+/// Sets a_roe_m of each waypoint that states RTN: the target, which does not manoeuvre, is where mean elements and J2
+/// bring it by that time, and the servicer stands so that the target has that position and velocity in its RTN. Throws
+/// MissionError that names the waypoint, if the target's orbit is that of a file or does not exist.
+void place_rtn_waypoints(const TableReader& document, Mission& mission);
 
 }  // namespace vbar::mission

@@ -15,7 +15,6 @@
 #include "host_sim/mission/name_search.h"
 #include "host_sim/mission/read_attitude.h"
 #include "host_sim/mission/read_sections.h"
-#include "host_sim/mission/spacecraft_number.h"
 
 namespace vbar::mission {
 

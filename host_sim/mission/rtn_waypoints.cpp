@@ -1,5 +1,3 @@
-#include "host_sim/mission/rtn_waypoints.h"
-
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -9,6 +7,7 @@
 #include "fsw/orbit/propagate.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
+#include "host_sim/mission/read_sections.h"
 
 namespace vbar::mission {
 namespace {

@@ -1,4 +1,3 @@
-#include "host_sim/observation_files/compact_rinex.h"
 
 #include <array>
 #include <cstdint>

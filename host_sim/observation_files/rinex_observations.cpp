@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "host_sim/observation_files/compact_rinex.h"
-
 namespace vbar::observation_files {
 
 using orbit_files::TimeSystem;

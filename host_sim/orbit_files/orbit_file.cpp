@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "fsw/orbit/constants.h"
+#include "fsw/orbit/gravity_field.h"
 #include "host_sim/files/data_stream.h"
 #include "host_sim/files/text_lines.h"
 #include "host_sim/truth/earth/time_scales.h"

@@ -9,7 +9,7 @@
 
 #include "fsw/core/gps_time.h"
 #include "fsw/orbit/elements.h"
-#include "host_sim/files/released_file.h"
+#include "host_sim/files/output_file.h"
 #include "host_sim/truth/earth/earth_rotation.h"
 #include "host_sim/truth/truth_model.h"
 

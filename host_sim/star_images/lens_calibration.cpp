@@ -1,11 +1,11 @@
-#include "host_sim/star_images/lens_calibration.h"
-
 #include <cmath>
 #include <stdexcept>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <fmt/core.h>
+
+#include "host_sim/star_images/star_fix.h"
 
 namespace vbar::star_images {
 namespace {

@@ -11,10 +11,10 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "fsw/vision/pose/sizes.h"
-#include "host_sim/files/error_lines.h"
+#include "fsw/vision/pose/architecture.h"
+#include "host_sim/files/text_lines.h"
 #include "host_sim/mission/body_file.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/training/keypoint_choice.h"
 
 namespace {

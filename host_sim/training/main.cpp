@@ -14,8 +14,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "host_sim/files/error_lines.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/files/text_lines.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/training/crop_maker.h"
 #include "host_sim/training/shard_file.h"
 

@@ -1,5 +1,3 @@
-#include "host_sim/view/mission_scene.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,6 +18,8 @@
 #include "host_sim/truth/earth/time_scales.h"
 #include "host_sim/truth/forces/radiation_pressure.h"
 #include "host_sim/twins/camera/model/cad_model.h"
+#include "host_sim/view/embedded_table.h"
+#include "host_sim/view/view_page.h"
 
 namespace vbar::view {
 

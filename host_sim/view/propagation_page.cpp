@@ -1,4 +1,3 @@
-#include "host_sim/view/propagation_page.h"
 
 #include <algorithm>
 #include <array>

@@ -18,7 +18,6 @@
 #include "host_sim/report/sections/html_report.h"
 #include "host_sim/report/summary_json.h"
 #include "host_sim/view/embedded_table.h"
-#include "host_sim/view/mission_scene.h"
 
 // The bytes of the page, between the labels of page_template.S.
 extern "C" const char vbar_view_page_begin[];

@@ -15,6 +15,8 @@
 
 namespace vbar::view {
 
+struct CellTable;
+
 /// Returns the page without data; empty in a build that was configured without the programs of the page.
 [[nodiscard]] std::string_view page_template();
 
@@ -47,5 +49,28 @@ void write_view(const std::filesystem::path& file, std::span<const ViewedRun> ru
 /// run's folder. Returns the file of the report. Throws std::runtime_error that names the file.
 std::filesystem::path write_pages(const std::filesystem::path& run_folder, const ViewedRun& run,
                                   const std::filesystem::path& data_directory);
+
+// What a page draws beside the tables of a run and only the mission states: shapes of the spacecraft, cameras, keep-out
+// radii, sunlight.
+
+/// Returns the scene: the bodies of the servicer and of the target with their shapes, cameras, waypoints with their
+/// keep-out radii. A shape that cannot be read is left out, with the reason under "notes".
+[[nodiscard]] nlohmann::json scene_of(const mission::Mission& mission, const report::RunRecord& record,
+                                      const std::filesystem::path& data_directory);
+
+/// Returns the direction to the Sun, the fraction of its light that reaches the servicer, and whether that is eclipse,
+/// at steps of the run.
+[[nodiscard]] CellTable sunlight_of(const mission::Mission& mission, const report::RunRecord& record);
+
+// The page of a propagation (vbar propagate): orbits over time, and the motion of the second spacecraft relative to the
+// first one.
+
+/// Returns whether the folder holds a propagation, and not a run.
+[[nodiscard]] bool is_propagation(const std::filesystem::path& folder);
+
+/// Returns the page of a complete propagation. The ephemerides are read part by part, as those of a month at steps of a
+/// second are 2 GB; of more than 20,000 rows the page has those in which a column has an extreme in its part, as that
+/// of a run. Throws std::runtime_error that names the file and the line.
+[[nodiscard]] std::string propagation_page(const std::filesystem::path& folder, std::string_view name);
 
 }  // namespace vbar::view

@@ -8,7 +8,7 @@
 
 #include "emulators/optical_stimulator/optical_path.h"
 #include "hil_drivers/optical_stimulator/pictures/picture_maker.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include "hil_drivers/tron/protocols/rsi_client.h"
 #include "hil_drivers/tron/protocols/rsi_messages.h"
 #include "hil_drivers/tron/robot/robot_files.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "tests/unit/emulators/tron/scene/lab_scenes.h"
 
 #ifdef VBAR_HAVE_KDL

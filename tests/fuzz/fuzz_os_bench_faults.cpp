@@ -6,7 +6,7 @@
 #include <string>
 
 #include "emulators/optical_stimulator/faults.h"
-#include "emulators/optical_stimulator/xwd.h"
+#include "emulators/optical_stimulator/screen.h"
 #include "host_sim/mission/mission_error.h"
 #include "tests/fuzz/fuzz_target.h"
 

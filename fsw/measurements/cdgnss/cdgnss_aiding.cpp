@@ -4,7 +4,7 @@
 
 #include "fsw/math/cholesky.h"
 #include "fsw/math/math.h"
-#include "fsw/orbit/constants.h"
+#include "fsw/orbit/gravity_field.h"
 #include "fsw/orbit/roe.h"
 
 namespace vbar::fsw::measurements {

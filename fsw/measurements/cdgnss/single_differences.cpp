@@ -3,7 +3,7 @@
 #include "fsw/estimation/unscented.h"
 #include "fsw/gnss/ionosphere.h"
 #include "fsw/math/math.h"
-#include "fsw/orbit/constants.h"
+#include "fsw/orbit/gravity_field.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"
 

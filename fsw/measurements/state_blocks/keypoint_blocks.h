@@ -11,7 +11,7 @@
 
 #include "fsw/estimation/gauss_markov.h"
 #include "fsw/packets/message_list.h"
-#include "fsw/vision/pose/sizes.h"
+#include "fsw/vision/pose/architecture.h"
 
 namespace vbar::fsw::measurements {
 

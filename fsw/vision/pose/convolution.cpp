@@ -2,10 +2,11 @@
 
 #include <cstring>
 
+#include "fsw/vision/pose/architecture.h"
 #include "fsw/vision/pose/lanes.h"
-#include "fsw/vision/pose/number_range.h"
 
 namespace vbar::fsw::pose {
+
 namespace {
 
 constexpr int kBlockCells = 4;
@@ -239,6 +240,14 @@ void convolve_to_maps(const Layer& layer, std::span<const std::byte> weights, co
       if (map < maps.size()) maps[map][place] = x[lane];
     }
   });
+}
+
+Registers widest_registers() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx512f")) return Registers::kSixteen;
+  if (__builtin_cpu_supports("avx2")) return Registers::kEight;
+#endif
+  return Registers::kFour;
 }
 
 }  // namespace vbar::fsw::pose

@@ -3,7 +3,7 @@
 // bit-identical on every target.
 //
 // On 32-bit ARM these are NEON's instructions: the compiler uses NEON for floating point only if requested explicitly,
-// because NEON flushes denormal numbers to zero (the network has none: number_range.h). VMLA of the Cortex-A9 rounds
+// because NEON flushes denormal numbers to zero (the network has none: architecture.h). VMLA of the Cortex-A9 rounds
 // the product and then the sum; VFMA, which rounds once, is never used. Elsewhere they are the compiler's own vectors.
 
 #include <cstdint>

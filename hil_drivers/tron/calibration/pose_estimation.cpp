@@ -13,69 +13,6 @@ namespace vbar::tron::calibrate {
 namespace {
 
 using Eigen::Matrix3d;
-using Matrix9 = Eigen::Matrix<double, 9, 9>;
-using Row3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-
-Matrix9 kronecker(const Matrix3d& a, const Matrix3d& b) {
-  Matrix9 product;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) product.block<3, 3>(3 * i, 3 * j) = a(i, j) * b;
-  return product;
-}
-
-Matrix3d nearest_rotation(const Matrix3d& matrix) {
-  const Eigen::JacobiSVD<Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Matrix3d rotation = svd.matrixU() * svd.matrixV().transpose();
-  if (rotation.determinant() < 0.0)
-    rotation = svd.matrixU() * Eigen::Vector3d(1.0, 1.0, -1.0).asDiagonal() * svd.matrixV().transpose();
-  return rotation;
-}
-
-void solve_rotations(const std::vector<HandEyePair>& pairs, HandEye& result) {
-  // With rows in a vector, R_A R_X = R_Z R_B reads (R_A (x) I) x = (I (x) R_B') z.
-  Eigen::Matrix<double, 18, 18> normal = Eigen::Matrix<double, 18, 18>::Zero();
-  Eigen::Matrix<double, 9, 18> rows;
-  for (const HandEyePair& pair : pairs) {
-    rows.leftCols<9>() = kronecker(pair.A.linear(), Matrix3d::Identity());
-    rows.rightCols<9>() = -kronecker(Matrix3d::Identity(), pair.B.linear().transpose());
-    normal += rows.transpose() * rows;
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 18, 18>> eigen(normal);
-  const Eigen::Matrix<double, 18, 1> null = eigen.eigenvectors().col(0);
-  const Matrix3d X = Eigen::Map<const Row3>(null.data()), Z = Eigen::Map<const Row3>(null.data() + 9);
-  const double sign = X.determinant() + Z.determinant() < 0.0 ? -1.0 : 1.0;
-  result.X.linear() = nearest_rotation(sign * X);
-  result.Z.linear() = nearest_rotation(sign * Z);
-}
-
-void solve_translations(const std::vector<HandEyePair>& pairs, HandEye& result) {
-  // R_A t_X + t_A = R_Z t_B + t_Z.
-  const auto count = static_cast<Eigen::Index>(pairs.size());
-  Eigen::MatrixXd matrix(3 * count, 6);
-  Eigen::VectorXd right(3 * count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const HandEyePair& pair = pairs[static_cast<std::size_t>(i)];
-    matrix.block<3, 3>(3 * i, 0) = pair.A.linear();
-    matrix.block<3, 3>(3 * i, 3) = -Matrix3d::Identity();
-    right.segment<3>(3 * i) = result.Z.linear() * pair.B.translation() - pair.A.translation();
-  }
-  const Eigen::VectorXd solution = matrix.colPivHouseholderQr().solve(right);
-  result.X.translation() = solution.head<3>();
-  result.Z.translation() = solution.tail<3>();
-}
-
-}  // namespace
-
-HandEye solve_hand_eye(const std::vector<HandEyePair>& pairs) {
-  HandEye result;
-  if (pairs.empty()) return result;
-  solve_rotations(pairs, result);
-  solve_translations(pairs, result);
-  return result;
-}
-
-namespace {
-
 using fsw::Vector3;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
@@ -242,13 +179,15 @@ bool minimise(const BoardDesign& board, const LensCalibration& lens, const std::
   return true;
 }
 
-/// The plane's tilt reversed about the line of sight, its turn about it kept.
+/// The plane's tilt reversed about the line of sight, its turn about it kept: its normal rotated past the line of sight
+/// by the angle between both, the quaternion (n.s, n x s).
 Eigen::Isometry3d with_tilt_reversed(const Eigen::Isometry3d& T) {
   const Vector3 sight = T.translation().normalized();
   const Vector3 normal = T.linear().col(2);
-  const Vector3 mirrored = 2.0 * normal.dot(sight) * sight - normal;
+  const Vector3 axis = normal.cross(sight);
+  const Eigen::Quaterniond turn(normal.dot(sight), axis.x(), axis.y(), axis.z());
   Eigen::Isometry3d result = T;
-  result.linear() = Eigen::Quaterniond::FromTwoVectors(normal, mirrored).toRotationMatrix() * T.linear();
+  result.linear() = turn.toRotationMatrix() * T.linear();
   return result;
 }
 

@@ -12,21 +12,6 @@
 
 namespace vbar::tron::calibrate {
 
-// The start of a fit: two constant transforms around a known chain.
-
-/// Holds one pair of A_i X = Z B_i: A is seen, B is by the chain.
-struct HandEyePair {
-  Eigen::Isometry3d A, B;
-};
-
-struct HandEye {
-  Eigen::Isometry3d X = Eigen::Isometry3d::Identity(), Z = Eigen::Isometry3d::Identity();
-};
-
-/// Solves for the rotations by the null space of [R_A (x) I, -I (x) R_B'], for the translations by least squares. Needs
-/// three pairs with rotations about two axes at least; with fewer the result is arbitrary.
-[[nodiscard]] HandEye solve_hand_eye(const std::vector<HandEyePair>& pairs);
-
 // Scatter of a source's poses about its model: rotations of what carries camera and target, and their places.
 
 /// Holds standard deviations an axis. A rotation of the camera moves the target at the side of the image, one of the

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "hil_drivers/tron/calibration/chain_fit.h"
+#include "hil_drivers/tron/calibration/hand_eye.h"
 #include "hil_drivers/tron/calibration/pose_estimation.h"
 
 namespace vbar::tron::calibrate {

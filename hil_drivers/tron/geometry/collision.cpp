@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "fsw/vision/pose/sizes.h"
+#include "fsw/vision/pose/architecture.h"
 #include "host_sim/mission/body_file.h"
 
 namespace vbar::tron {

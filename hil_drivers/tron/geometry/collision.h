@@ -16,7 +16,11 @@
 
 namespace vbar::tron {
 
-// Distances of segments from segments and boxes.
+// Distances of segments from segments and boxes. They are written out, in 55 lines, of which the Flexible Collision
+// Library (FCL 0.7) would leave 25, because it is slower: on one computer 0.14 against 0.06 us for two capsules and 1.7
+// against 0.4 us for capsule and box, without the making of its shapes. Over 1e5 random pairs the distances of capsules
+// are equal within 2e-12 m; from boxes they differ by at most 0.4 mm with FCL's tolerance at 1e-9, and by 0.2 m in the
+// worst pair at its default of 1e-6, where its iteration ends too early.
 
 /// Holds all points within `radius_m` of a segment.
 struct Capsule {

@@ -23,10 +23,10 @@
 #include "hil_drivers/tron/motion_planning/arm_planner.h"
 #include "hil_drivers/tron/program/commands.h"
 #include "host_sim/files/data_stream.h"
-#include "host_sim/files/error_lines.h"
 #include "host_sim/files/output_file.h"
+#include "host_sim/files/text_lines.h"
 #include "host_sim/io/byte_channel.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/sensors/settings/camera_file.h"
 #include "host_sim/simulation/exit_codes.h"
 

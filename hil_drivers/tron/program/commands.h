@@ -1,5 +1,5 @@
 #pragma once
-// vbar tron plan: which of a mission's images a testbed can show, for each face by which it may hold the target.
+// Commands of vbar tron.
 
 namespace CLI {
 class App;
@@ -7,19 +7,12 @@ class App;
 
 namespace vbar::tron {
 
-/// Adds the command to the program; it sets `exit_code` when it has run.
+/// Adds `vbar tron plan`, which of a mission's images a testbed can show, for each face by which it may hold the
+/// target; it sets `exit_code` when it has run.
 void add_plan_command(CLI::App& program, int& exit_code);
 
-}  // namespace vbar::tron
-
-// vbar tron calibrate: measures a testbed and writes its calibration. vbar tron check: measures whether a calibration
-// is still valid.
-
-namespace CLI {}
-
-namespace vbar::tron {
-
-/// Adds both commands to the program; they set `exit_code` when they have run.
+/// Adds `vbar tron calibrate`, which measures a testbed and writes its calibration, and `vbar tron check`, whether a
+/// calibration is still valid; they set `exit_code` when they have run.
 void add_calibrate_commands(CLI::App& program, int& exit_code);
 
 }  // namespace vbar::tron

@@ -8,7 +8,7 @@
 
 #include "hil_drivers/testbeds.h"
 #include "hil_drivers/tron/program/commands.h"
-#include "host_sim/files/error_lines.h"
+#include "host_sim/files/text_lines.h"
 #include "host_sim/mission/mission_error.h"
 #include "host_sim/simulation/exit_codes.h"
 

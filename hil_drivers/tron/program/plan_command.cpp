@@ -24,7 +24,7 @@
 #include "hil_drivers/tron/program/commands.h"
 #include "host_sim/files/output_file.h"
 #include "host_sim/installation/sensor_kinds.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/mission/load.h"
 #include "host_sim/mission/mission.h"
 #include "host_sim/mission/mission_error.h"

@@ -5,7 +5,7 @@
 
 #include "fsw/math/math.h"
 #include "fsw/packets/messages.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/sensors/camera/camera_kind.h"
 #include "host_sim/sensors/camera/camera_rows.h"
 #include "host_sim/sensors/camera/camera_truth.h"

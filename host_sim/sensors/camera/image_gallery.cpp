@@ -12,7 +12,7 @@
 
 #include "fsw/math/math.h"
 #include "fsw/vision/target_tracking/angles_only_tracking.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/report/plots/png.h"
 #include "host_sim/report/words.h"
 #include "host_sim/sensors/camera/camera_kind.h"

@@ -11,7 +11,7 @@
 
 #include "fsw/vision/pose/crop.h"
 #include "fsw/vision/pose/spacecraft_pose_network.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/report/plots/png.h"
 #include "host_sim/report/words.h"
 #include "host_sim/sensors/camera/camera_kind.h"

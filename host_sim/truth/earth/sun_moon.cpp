@@ -5,6 +5,7 @@
 #include <erfa.h>
 
 namespace vbar::truth {
+
 namespace {
 
 constexpr double kJ2000 = 2451545.0;
@@ -57,6 +58,13 @@ const SunMoon& SunMoonInterpolator::node(std::int64_t index) {
   const auto found = nodes_.find(index);
   if (found != nodes_.end()) return found->second;
   return nodes_.emplace(index, sun_moon_series({kJ2000, static_cast<double>(index) / kNodesPerDay})).first->second;
+}
+
+fsw::Vector3 earth_velocity_bcrs(JulianDate tt) {
+  double heliocentric[2][3], barycentric[2][3];
+  static_cast<void>(eraEpv00(tt.day, tt.fraction, heliocentric, barycentric));  // warns of dates outside 1900 to 2100
+  const double scale = kAstronomicalUnit / kSecondsPerDay;
+  return {scale * barycentric[1][0], scale * barycentric[1][1], scale * barycentric[1][2]};
 }
 
 }  // namespace vbar::truth

@@ -2,7 +2,6 @@
 
 #include <stdexcept>
 
-#include "host_sim/truth/earth/earth_velocity.h"
 #include "host_sim/truth/earth/sun_moon.h"
 #include "host_sim/truth/earth/time_scales.h"
 #include "host_sim/truth/forces/radiation_pressure.h"

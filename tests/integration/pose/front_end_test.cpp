@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/training/crop_maker.h"
 #include "tests/integration/pose/front_end_errors.h"
 #include "tests/support/accuracy.h"

@@ -17,7 +17,7 @@
 #include "fsw/vision/pose/spacecraft_pose_network.h"
 #include "host_sim/installation/sensor_kinds.h"
 #include "host_sim/mission/body_file.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/sensors/camera/camera_kind.h"
 #include "host_sim/training/circumstances.h"
 #include "host_sim/twins/camera/camera_settings.h"

@@ -11,7 +11,7 @@ EXPERIMENT1 = SOURCE / "missions" / "experiment1.toml"
 EXPERIMENT2 = SOURCE / "missions" / "experiment2.toml"
 EXPERIMENT3 = SOURCE / "missions" / "experiment3.toml"
 SHORT = "mission.duration_h=0.2"
-STATE_FLIPS = BINARY / "tests/integration/state_flips/vbar_state_flips"
+STATE_FLIPS = BINARY / "tests/integration/vbar_state_flips"
 FAULTS = """
 extends = "{base}"
 [[fault]]

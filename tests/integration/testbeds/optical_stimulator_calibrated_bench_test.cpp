@@ -12,7 +12,7 @@
 
 #include "emulators/optical_stimulator/optical_path.h"
 #include "hil_drivers/optical_stimulator/calibration/procedure.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/sensors/settings/camera_file.h"
 #include "tests/support/figures.h"
 

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "boards/zynq7000/clock_divisors.h"
-#include "boards/zynq7000/cycle_count.h"
+#include "boards/zynq7000/clocks.h"
+#include "boards/zynq7000/timer.h"
 
 namespace vbar::boards::zynq7000 {
 namespace {

@@ -8,7 +8,7 @@
 #include "emulators/optical_stimulator/light_path.h"
 #include "emulators/optical_stimulator/screen.h"
 #include "emulators/optical_stimulator/settings.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "tests/support/paths.h"
 
 namespace vbar::optical_stimulator::bench::test {

@@ -12,7 +12,6 @@
 
 #include "emulators/optical_stimulator/optical_path.h"
 #include "emulators/optical_stimulator/screen.h"
-#include "emulators/optical_stimulator/xwd.h"
 #include "tests/unit/emulators/optical_stimulator/bench_fixture.h"
 
 namespace vbar::optical_stimulator::bench {

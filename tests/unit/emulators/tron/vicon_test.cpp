@@ -8,7 +8,7 @@
 #include "emulators/tron/world/motion_capture.h"
 #include "emulators/tron/world/vicon_visibility.h"
 #include "hil_drivers/tron/protocols/vicon_receiver.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 
 namespace vbar::tron::bench {
 

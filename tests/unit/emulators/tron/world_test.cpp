@@ -8,7 +8,7 @@
 
 #include "hil_drivers/tron/geometry/kinematics.h"
 #include "host_sim/engine/random_stream.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 
 namespace vbar::tron::bench {
 namespace {

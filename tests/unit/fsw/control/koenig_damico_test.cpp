@@ -49,7 +49,7 @@ TEST_F(KoenigDamico, MissionLegStartsWhereTheOracleDoes) {
   EXPECT_NEAR(u * 180.0 / M_PI, -122.378645, 2e-5);  // digits given; 39 h of drift multiply those of the elements
 }
 
-// Optimum of CVXOPT over the whole 10 s grid (tests/peers/koenig/koenig_reference.py --legs): 4.50630 mm/s. The control
+// Optimum of CVXOPT over the whole 10 s grid (tests/peers/koenig_reference.py --legs): 4.50630 mm/s. The control
 // matrix of a circular orbit would give 4.50635. The solver may exceed the optimum by its cost tolerance, 0.1 %; the
 // digits of the oracle and of the leg leave 1e-5.
 TEST_F(KoenigDamico, Leg8To9CostsTheConeSolversOptimum) {
@@ -288,7 +288,7 @@ TEST_F(KoenigDamico, HistoryOfTheWorkspaceDoesNotMatter) {
 }  // namespace
 
 // 1200 random rendezvous problems against the optima of a general cone solver over the whole grid (CVXOPT), written by
-// tests/peers/koenig/koenig_reference.py with an independent model of the impulses' effects.
+// tests/peers/koenig_reference.py with an independent model of the impulses' effects.
 
 namespace {
 

@@ -10,7 +10,7 @@
 
 #include <Eigen/Geometry>
 
-#include "fsw/filter/dynamics.h"
+#include "fsw/filter/propagation.h"
 #include "fsw/gnss/differential.h"
 #include "fsw/gnss/ephemeris.h"
 #include "fsw/orbit/elements.h"

@@ -2,7 +2,6 @@
 
 #include "fsw/navigation/navigation.h"
 
-#include "fsw/filter/dynamics.h"
 #include "fsw/filter/propagation.h"
 #include "fsw/gnc/telecommand_checks.h"
 #include "fsw/navigation/filter_configuration.h"

@@ -9,7 +9,6 @@
 #include <erfam.h>
 #include <gtest/gtest.h>
 
-#include "fsw/orbit/constants.h"
 #include "fsw/orbit/earth_rotation.h"
 #include "fsw/orbit/gravity_coefficients.h"
 #include "fsw/orbit/gravity_field.h"

@@ -9,7 +9,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "fsw/orbit/constants.h"
+#include "fsw/orbit/gravity_field.h"
 #include "fsw/orbit/mean_osculating.h"
 #include "fsw/orbit/propagate.h"
 #include "fsw/orbit/roe.h"

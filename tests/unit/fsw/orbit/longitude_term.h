@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "fsw/orbit/constants.h"
 #include "fsw/orbit/elements.h"
+#include "fsw/orbit/gravity_field.h"
 
 namespace vbar::fsw::orbit {
 

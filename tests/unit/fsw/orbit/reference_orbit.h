@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "fsw/orbit/constants.h"
 #include "fsw/orbit/elements.h"
+#include "fsw/orbit/gravity_field.h"
 
 namespace vbar::fsw::orbit::reference {
 

@@ -12,7 +12,6 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-#include "fsw/safety/drift_probability.h"
 #include "tests/support/figures.h"
 #include "tests/unit/fsw/orbit/mission.h"
 

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "fsw/orbit/constants.h"
+#include "fsw/orbit/gravity_field.h"
 #include "fsw/orbit/propagate.h"
 #include "fsw/orbit/roe.h"
 #include "fsw/orbit/rtn.h"

@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "fsw/orbit/constants.h"
+#include "fsw/orbit/gravity_field.h"
 #include "fsw/orbit/rtn.h"
 #include "fsw/packets/messages.h"
 #include "hil_drivers/external/source_server.h"

@@ -1,5 +1,5 @@
 // Kinematics of one arm at postures whose pose follows from the drawing, at singularities and for invalid input. The
-// comparison with Orocos KDL is in tests/peers/tron_kinematics.
+// comparison with Orocos KDL is in tests/peers/tron.
 
 #include <algorithm>
 #include <cmath>

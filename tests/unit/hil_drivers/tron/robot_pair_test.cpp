@@ -15,7 +15,7 @@
 
 #include "emulators/tron/controller/cycle_clock.h"
 #include "hil_drivers/tron/robot/robot_files.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 
 namespace vbar::tron {
 namespace {

@@ -11,23 +11,39 @@
 #include <fstream>
 #include <locale>
 #include <set>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "host_sim/campaign/case.h"
 #include "host_sim/campaign/plan.h"
 #include "host_sim/engine/random_stream.h"
 #include "host_sim/mission/mission_error.h"
 #include "tests/support/paths.h"
-#include "tests/unit/host_sim/campaign/campaign_text.h"
 
 namespace vbar::campaign {
 
 namespace {
 
-using test::campaign_of;
 using testing::ElementsAre;
 using testing::HasSubstr;
+
+CampaignFile campaign_of(const std::string& general, const std::string& rest = "") {
+  return parse_campaign("[campaign]\nmission = \"experiment3\"\n" + general + "\n" + rest, "test.toml");
+}
+
+/// Value of `key` in the case of that seed whose swept values are `swept`.
+std::string value_of(const CampaignFile& campaign, std::uint64_t seed, const std::vector<std::string>& swept,
+                     const std::string& key) {
+  const std::vector<std::string> keys = campaign.keys();
+  for (const Case& one : expand(campaign)) {
+    if (one.seed != seed || !std::equal(swept.begin(), swept.end(), one.values.begin())) continue;
+    for (std::size_t k = 0; k < keys.size(); ++k)
+      if (keys[k] == key) return one.values[k];
+  }
+  return "no such case";
+}
 
 std::string refusal_of(const std::string& general, const std::string& rest = "") {
   try {
@@ -284,8 +300,6 @@ TEST(CampaignFile, OfEveryExampleIsRead) {
 // holds.
 
 namespace {
-
-using test::value_of;
 
 constexpr const char* kMass = R"(
 [[disperse]]

@@ -1,11 +1,11 @@
 // Figures of two receivers side by side, and the correlation time beside white noise.
 
-#include "host_sim/flown_gnss/comparison.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
+
+#include "host_sim/flown_gnss/flown_receiver.h"
 
 namespace vbar::flown_gnss {
 namespace {

@@ -12,8 +12,8 @@
 
 #include <gtest/gtest.h>
 
-#include "host_sim/flown_gnss/comparison.h"
 #include "host_sim/flown_gnss/ephemeris_fit.h"
+#include "host_sim/flown_gnss/flown_receiver.h"
 #include "host_sim/installation/sensor_kinds.h"
 #include "host_sim/mission/mission.h"
 #include "host_sim/orbit_files/orbit_file.h"

@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "host_sim/mission/mission.h"
 #include "host_sim/mission/read_sections.h"
-#include "host_sim/mission/spacecraft_number.h"
 #include "tests/support/paths.h"
 #include "tests/unit/host_sim/mission/mission_text.h"
 

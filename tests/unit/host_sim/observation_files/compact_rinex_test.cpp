@@ -1,8 +1,6 @@
 // Compact RINEX against RNXCMP 4.1.0 (Hatanaka, Geospatial Information Authority of Japan), whose rnx2crx and crx2rnx
 // made the pairs of files.
 
-#include "host_sim/observation_files/compact_rinex.h"
-
 #include <exception>
 #include <fstream>
 #include <iterator>
@@ -12,6 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "host_sim/observation_files/rinex_observations.h"
 #include "tests/support/paths.h"
 
 namespace vbar::observation_files {

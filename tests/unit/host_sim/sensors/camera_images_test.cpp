@@ -8,9 +8,9 @@
 #include <gtest/gtest.h>
 
 #include "fsw/math/math.h"
-#include "fsw/orbit/constants.h"
+#include "fsw/orbit/gravity_field.h"
 #include "host_sim/mission/body_file.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/sensors/camera/camera_kind.h"
 #include "host_sim/sensors/camera/camera_truth.h"
 #include "host_sim/sensors/camera/image_gallery.h"

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 
 #include "host_sim/installation/sensor_kinds.h"
-#include "host_sim/mission/process_noise_keys.h"
+#include "host_sim/mission/mission.h"
 #include "host_sim/truth/force_list.h"
 #include "tests/support/paths.h"
 #include "tests/unit/host_sim/mission/mission_text.h"

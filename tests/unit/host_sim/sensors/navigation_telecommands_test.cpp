@@ -7,7 +7,6 @@
 
 #include <gmock/gmock.h>
 
-#include "host_sim/installation/burn_limits.h"
 #include "host_sim/installation/sensor_kinds.h"
 #include "host_sim/sensors/camera/camera_kind.h"
 #include "host_sim/sensors/camera/camera_rows.h"

@@ -10,7 +10,7 @@
 #include "fsw/gnss/receiver_decoder.h"
 #include "fsw/packets/messages.h"
 #include "host_sim/installation/sensor_kinds.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "tests/support/paths.h"
 
 namespace vbar::sensors {

@@ -9,7 +9,7 @@
 
 #include "host_sim/files/output_file.h"
 #include "host_sim/files/text_lines.h"
-#include "host_sim/star_images/lens_calibration.h"
+#include "host_sim/star_images/star_fix.h"
 #include "tests/support/paths.h"
 
 namespace vbar::star_images {

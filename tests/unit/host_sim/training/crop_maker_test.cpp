@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/training/circumstances.h"
 #include "host_sim/twins/camera/photometry.h"
 #include "host_sim/twins/camera/scene.h"

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "host_sim/mission/body_file.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/training/circumstances.h"
 #include "tests/support/paths.h"
 #include "tests/support/sanitizers.h"

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/training/circumstances.h"
 #include "host_sim/training/crop_maker.h"
 #include "host_sim/twins/camera/model/cad_objects.h"

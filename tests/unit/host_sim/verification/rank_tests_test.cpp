@@ -1,10 +1,10 @@
 // Tests of two samples against values published or computed elsewhere.
-#include "host_sim/verification/rank_tests.h"
-
 #include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
+
+#include "host_sim/verification/compare.h"
 
 namespace vbar::verification {
 namespace {

@@ -17,7 +17,7 @@
 #include <unistd.h>
 
 #include "host_sim/io/child_process.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "tests/support/paths.h"
 
 namespace vbar::optical_stimulator::bench::test {

@@ -22,7 +22,7 @@
 #include "hil_drivers/tron/protocols/rsi_client.h"
 #include "hil_drivers/tron/robot/robot_files.h"
 #include "host_sim/io/child_process.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 #include "tests/support/paths.h"
 
 namespace vbar::tron::bench::test {

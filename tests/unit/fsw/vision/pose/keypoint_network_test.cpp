@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include "fsw/vision/pose/architecture.h"
 #include "fsw/vision/pose/convolution.h"
-#include "fsw/vision/pose/number_range.h"
 #include "tests/support/figures.h"
 #include "tests/unit/fsw/vision/pose/network_file.h"
 #include "tests/unit/fsw/vision/pose/plain_network.h"
@@ -208,7 +208,7 @@ TEST(Convolution, WideRegistersGiveTheBitsOfFourLanes) {
 
 }  // namespace
 
-// No denormal number arises in the network, whatever its weights and its crop (number_range.h). The x86 processor keeps
+// No denormal number arises in the network, whatever its weights and its crop (architecture.h). The x86 processor keeps
 // account of that: a denormal operand or an underflow sets a flag that stays set.
 
 #if defined(__SSE2__)

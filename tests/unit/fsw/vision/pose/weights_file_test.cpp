@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "fsw/vision/pose/keypoint_network.h"
-#include "fsw/vision/pose/network_weights.h"
 #include "tests/unit/fsw/vision/pose/network_file.h"
 
 namespace {

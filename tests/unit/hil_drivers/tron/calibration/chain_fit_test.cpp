@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "hil_drivers/tron/calibration/hand_eye.h"
 #include "hil_drivers/tron/calibration/pose_estimation.h"
 #include "tests/unit/hil_drivers/tron/calibration/calibrated_bench.h"
 

@@ -12,7 +12,7 @@
 
 #include "hil_drivers/tron/protocols/rsi_messages.h"
 #include "hil_drivers/tron/robot/robot_files.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/mission/data_file.h"
 
 namespace vbar::tron::rsi {
 

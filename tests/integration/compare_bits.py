@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""usage: compare.py HOST_PROGRAM ARM_LINUX_PROGRAM -- do both print the same digests? 77: cannot be tested here."""
+"""usage: compare_bits.py HOST_PROGRAM ARM_LINUX_PROGRAM -- do both print the same digests? 77: cannot be tested here."""
 import difflib
 import pathlib
 import shutil

@@ -25,9 +25,9 @@
 #include "hil_drivers/optical_stimulator/hardware/devices.h"
 #include "hil_drivers/optical_stimulator/hardware/display.h"
 #include "hil_drivers/zaber/client.h"
-#include "host_sim/files/error_lines.h"
 #include "host_sim/files/output_file.h"
-#include "host_sim/mission/data_directory.h"
+#include "host_sim/files/text_lines.h"
+#include "host_sim/mission/data_file.h"
 #include "host_sim/sensors/settings/camera_file.h"
 
 namespace vbar::optical_stimulator::calibrate {

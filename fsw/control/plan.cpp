@@ -1,9 +1,9 @@
-#include "fsw/control/check_problem.h"
+#include "fsw/control/plan.h"
 
 #include <cstdint>
 
 #include "fsw/math/math.h"
-#include "fsw/orbit/constants.h"
+#include "fsw/orbit/gravity_field.h"
 
 namespace vbar::fsw::control {
 namespace {
