@@ -88,8 +88,8 @@ void Gnc::check_retreat() {
                        .argument = math::sqrt(retreat_.burn().dv_rtn.squaredNorm())});
 }
 
-/// Detects that no plan could be flown at the last decision of guidance, or that none is made about an object that may be
-/// another satellite.
+/// Detects that no plan could be flown at the last decision of guidance, or that none is made about an object that may
+/// be another satellite.
 void Gnc::check_hold() {
   faults_.check(now_, {.fault = telemetry_health::kFaultHold,
                        .is_detected = guidance_.is_holding() || is_target_in_doubt(),
