@@ -5,6 +5,7 @@ import fcntl
 import json
 import os
 import shutil
+import signal
 import subprocess
 import tempfile
 
@@ -97,7 +98,7 @@ class Page:
 
 @contextlib.contextmanager
 def browser(*flags):
-    """A browser with an empty profile, ended with this context."""
+    """A browser with an empty profile, ended with this context with all its processes and temporary files."""
     to_read, to_write = os.pipe()
     from_read, from_write = os.pipe()
     # The browser has its ends as descriptors 3 and 4: copies above them, so that none is overwritten.
@@ -108,7 +109,8 @@ def browser(*flags):
              "--no-first-run", "--disable-dev-shm-usage", "--disable-extensions", "--disable-background-networking",
              "--disable-component-update", "--disable-sync", "--mute-audio", "--enable-unsafe-swiftshader",
              "--remote-debugging-pipe", f"--user-data-dir={profile}", *flags, "about:blank"],
-            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, pass_fds=ends)
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, pass_fds=ends, start_new_session=True,
+            env={**os.environ, "TMPDIR": profile})
         for end in (to_read, from_write, *ends):
             os.close(end)
         try:
@@ -122,3 +124,5 @@ def browser(*flags):
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.wait()
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
