@@ -1,5 +1,6 @@
 // The C interface of the flight software (vbar_gnc.h).
 
+#include <algorithm>
 #include <cstring>
 #include <new>
 
@@ -60,6 +61,19 @@ vbar_status vbar_gnc_receive(void* state, const uint8_t* packet, size_t size) {
 vbar_status vbar_gnc_step(void* state, int64_t gps_time_ns) {
   if (state == nullptr) return as_c(Status::kInvalidArgument);
   return as_c(static_cast<Gnc*>(state)->step({gps_time_ns}));
+}
+
+vbar_status vbar_gnc_authenticate(void* state, const uint8_t* key, uint16_t index, uint64_t sequence) {
+  if (state == nullptr || key == nullptr) return as_c(Status::kInvalidArgument);
+  vbar::fsw::packets::TelecommandSecurity security{.index = index, .sequence = sequence};
+  static_assert(VBAR_GNC_KEY_BYTES == vbar::fsw::packets::kTelecommandKeyBytes);
+  std::copy_n(key, security.key.size(), security.key.begin());
+  static_cast<Gnc*>(state)->authenticate(security);
+  return as_c(Status::kOk);
+}
+
+uint64_t vbar_gnc_telecommand_sequence(const void* state) {
+  return state == nullptr ? 0 : static_cast<const Gnc*>(state)->telecommand_sequence();
 }
 
 size_t vbar_gnc_snapshot_size(void) {

@@ -61,6 +61,10 @@ class Gnc : private GncState {
 
   void set_sink(vbar_packet_sink sink, void* sink_context) { outbox_.set_sink(sink, sink_context); }
 
+  /// Implements vbar_gnc_authenticate and vbar_gnc_telecommand_sequence of the interface in C.
+  void authenticate(const packets::TelecommandSecurity& security) { inbox_.authenticate(security); }
+  [[nodiscard]] std::uint64_t telecommand_sequence() const { return inbox_.authentication().sequence(); }
+
   /// Checks one packet and keeps it for the coming step.
   Status receive(std::span<const std::uint8_t> packet) { return inbox_.receive(packet); }
 

@@ -1,16 +1,18 @@
 // Snapshot, restart, and which steps are accepted.
 
+#include <array>
 #include <cstring>
 #include <new>
 
 #include "fsw/gnc/gnc.h"
 #include "fsw/packets/crc.h"
+#include "fsw/packets/security_trailer.h"
 
 namespace vbar::fsw::gnc {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x52414256;  // "VBAR" in the order of a little-endian computer
-constexpr std::uint32_t kVersion = 4;
+constexpr std::uint32_t kVersion = 5;
 constexpr Duration kOldestWarm = duration_of_seconds(600);
 
 /// Precedes a snapshot; without padding. The representation is that of the computer.
@@ -28,7 +30,16 @@ static_assert(sizeof(SnapshotHeader) == 40);
 constexpr std::size_t kInboxAt = sizeof(SnapshotHeader);
 constexpr std::size_t kOutboxAt = kInboxAt + sizeof(messaging::Inbox::Retained);
 constexpr std::size_t kStateAt = kOutboxAt + sizeof(messaging::Outbox::Retained);
-constexpr std::size_t kBytes = kStateAt + sizeof(GncState);
+constexpr std::size_t kCodeAt = kStateAt + sizeof(GncState);
+constexpr std::size_t kBytes = kCodeAt + packets::kSecurityCodeBytes;
+
+/// Returns the code by which a snapshot is known as this computer's own; zeros without a key. Its first byte is that of
+/// kMagic, 'V' or 'R', with which no telecommand begins.
+std::array<std::uint8_t, packets::kSecurityCodeBytes> code_of(std::span<const std::uint8_t> snapshot,
+                                                              const packets::TelecommandAuthentication& keys) {
+  return keys.code_of(snapshot.first(offsetof(SnapshotHeader, crc)),
+                      snapshot.subspan(sizeof(SnapshotHeader), kCodeAt - sizeof(SnapshotHeader)));
+}
 
 std::uint32_t checksum(std::span<const std::uint8_t> snapshot) {
   const std::uint32_t of_header = packets::crc32_ieee(snapshot.first(offsetof(SnapshotHeader, crc)));
@@ -60,6 +71,8 @@ Status Gnc::save(std::span<std::uint8_t> snapshot) const {
   copy_bytes(&bytes[kInboxAt], &inbox, sizeof inbox);
   copy_bytes(&bytes[kOutboxAt], &outbox, sizeof outbox);
   copy_bytes(&bytes[kStateAt], static_cast<const GncState*>(this), sizeof(GncState));
+  const auto code = code_of(bytes, inbox_.authentication());
+  copy_bytes(&bytes[kCodeAt], code.data(), code.size());
   header.crc = checksum(bytes);
   copy_bytes(&bytes[0], &header, sizeof header);
   return Status::kOk;
@@ -74,7 +87,11 @@ Status Gnc::restore(std::span<const std::uint8_t> snapshot) {
     const bool is_ours = header.magic == kMagic && header.version == kVersion && header.bytes == kBytes &&
                          header.spacecraft == outbox_.spacecraft();
     if (!is_ours) return Status::kWrongType;
-    return header.crc == checksum(snapshot.first(kBytes)) ? Status::kOk : Status::kBadChecksum;
+    if (header.crc != checksum(snapshot.first(kBytes))) return Status::kBadChecksum;
+    const bool is_known = !inbox_.authentication().is_required() ||
+                          packets::are_same(code_of(snapshot, inbox_.authentication()),
+                                            snapshot.subspan(kCodeAt, packets::kSecurityCodeBytes));
+    return is_known ? Status::kOk : Status::kBadChecksum;
   }();
   if (restored_ != Status::kOk) return restored_;
   messaging::Inbox::Retained inbox;

@@ -13,13 +13,16 @@ Inbox::Inbox(std::uint8_t spacecraft)
 
 Status Inbox::receive(std::span<const std::uint8_t> bytes) {
   const Result<PacketView> packet = packets::parse_packet(bytes);
-  const Status status = packet.ok() ? file(packet.value()) : packet.status();
+  const Status status = packet.ok() ? file(bytes, packet.value()) : packet.status();
   count(status);
   return status;
 }
 
-Status Inbox::file(const PacketView& packet) {
-  if (packet.header.spacecraft != spacecraft_) return Status::kInvalidArgument;
+Status Inbox::file(std::span<const std::uint8_t> bytes, const PacketView& received) {
+  if (received.header.spacecraft != spacecraft_) return Status::kInvalidArgument;
+  const Result<PacketView> verified = authentication_.verify(bytes, received);
+  if (!verified.ok()) return verified.status();
+  const PacketView& packet = verified.value();
   if (!is_usable(packet.header.time)) return Status::kOutOfRange;
   Status status = Status::kWrongType;  // result for an unknown APID
   packets::for_each_message([&]<class Message>() {

@@ -9,6 +9,7 @@
 #include "fsw/core/result.h"
 #include "fsw/core/time_ordered_queue.h"
 #include "fsw/packets/messages.h"
+#include "fsw/packets/security_trailer.h"
 #include "fsw/vision/imaging/image_assembly.h"
 
 namespace vbar::fsw::messaging {
@@ -47,6 +48,10 @@ class Inbox {
 
   explicit Inbox(std::uint8_t spacecraft);
 
+  /// Accepts telecommands only with a valid security trailer from here on (security_trailer.h).
+  void authenticate(const packets::TelecommandSecurity& security) { authentication_.require(security); }
+  [[nodiscard]] const packets::TelecommandAuthentication& authentication() const { return authentication_; }
+
   /// Receives one packet. The status is the reason for a rejection. Never reads past `bytes`.
   Status receive(std::span<const std::uint8_t> bytes);
 
@@ -65,11 +70,13 @@ class Inbox {
   struct Retained {
     PacketCounters counters;
     Duration step_period;
+    std::uint64_t telecommand_sequence = 0;
   };
-  [[nodiscard]] Retained retained() const { return {counters_, step_period_}; }
+  [[nodiscard]] Retained retained() const { return {counters_, step_period_, authentication_.sequence()}; }
   void restore(const Retained& retained) {
     counters_ = retained.counters;
     step_period_ = retained.step_period;
+    authentication_.raise_sequence(retained.telecommand_sequence);
   }
   /// Returns the packets of one message, in order of their time tags.
   template <class Message>
@@ -84,7 +91,7 @@ class Inbox {
   [[nodiscard]] Duration step_period() const { return step_period_; }
 
  private:
-  Status file(const packets::PacketView& packet);
+  Status file(std::span<const std::uint8_t> bytes, const packets::PacketView& received);
   template <class Message>
   Status take(const packets::PacketView& packet);
   Status take_special(const packets::PacketHeader& header, const tick& message);
@@ -92,6 +99,7 @@ class Inbox {
   void count(Status status);
 
   std::uint8_t spacecraft_;
+  packets::TelecommandAuthentication authentication_;
   PacketCounters counters_;
   Duration step_period_;
   packets::TupleOfRoute<&packets::has_queue, Queue>::Type queues_;

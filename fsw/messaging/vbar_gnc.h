@@ -49,6 +49,19 @@ vbar_status vbar_gnc_receive(void* state, const uint8_t* packet, size_t size);
 /* Runs the step at `gps_time_ns` on the packets received since the last one. */
 vbar_status vbar_gnc_step(void* state, int64_t gps_time_ns);
 
+/* Authentication of telecommands (docs/wire_formats.md). It is optional: an implementation without these two functions
+ * accepts every telecommand, and a caller that has a key does not start it. */
+#define VBAR_GNC_KEY_BYTES 32
+
+/* Demands a security trailer of every telecommand from here on: of this key (VBAR_GNC_KEY_BYTES bytes, which the
+ * caller need not retain) and index, with sequence numbers above `sequence`. To be called after vbar_gnc_init, before
+ * the first packet. The key reaches the computer by this call only, never by the link, and no snapshot contains it. */
+vbar_status vbar_gnc_authenticate(void* state, const uint8_t* key, uint16_t index, uint64_t sequence);
+
+/* The sequence number that the next telecommand must exceed, which a computer passes on when it starts a new state: it
+ * would otherwise accept the telecommands of the session before once more. 0 without a key. */
+uint64_t vbar_gnc_telecommand_sequence(const void* state);
+
 /* The snapshot is what a computer retains through a reboot: a header with version, size, step, time and checksum, and
  * the state with its workspaces, without addresses, in the representation of the computer and the build that made it.
  * It is optional: an implementation without these three functions cannot be restored. */
@@ -63,7 +76,8 @@ vbar_status vbar_gnc_save(const void* state, uint8_t* snapshot, size_t size);
 /* Restores a state that vbar_gnc_init has just made, with its sink and spacecraft number. The next step continues from
  * a snapshot that is at most 600 s older; of an older one it keeps the telecommands only. A snapshot that is truncated
  * (kTooShort), of another layout, version or spacecraft (kWrongType) or damaged (kBadChecksum) is refused and leaves a
- * cold state, whose next step reports the refusal. */
+ * cold state, whose next step reports the refusal. With a key, one of another key or without one is damaged, and the
+ * sequence number of telecommands is the larger of the two. */
 vbar_status vbar_gnc_restore(void* state, const uint8_t* snapshot, size_t size);
 
 #ifdef __cplusplus

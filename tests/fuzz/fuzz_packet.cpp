@@ -1,5 +1,5 @@
 // parse_packet and decode of every message on arbitrary bytes. Promises: nothing is read past the end, and what decodes
-// encodes back to the same bytes.
+// encodes back to the same bytes; no telecommand is authentic.
 //
 // A fuzzer does not guess a CRC or a type hash. So the input is tried as it is, and also as a payload (its first byte
 // chooses the message) that is given the right header, type hash and CRC.
@@ -10,6 +10,7 @@
 
 #include "fsw/packets/big_endian.h"
 #include "fsw/packets/messages.h"
+#include "fsw/packets/security_trailer.h"
 #include "fsw/packets/segmentation.h"
 #include "tests/fuzz/fuzz_target.h"
 
@@ -28,6 +29,17 @@ void expect_same_bytes_back(std::span<const std::uint8_t> bytes, const packets::
   VBAR_FUZZ_EXPECT(std::equal(bytes.begin(), bytes.end(), again.begin()));
 }
 
+/// Without the key no telecommand is accepted; what is not one is left as it is.
+void try_authentication(std::span<const std::uint8_t> bytes, const packets::PacketView& packet) {
+  packets::TelecommandAuthentication authentication;
+  packets::TelecommandSecurity security;
+  security.key.fill(0xA5);
+  authentication.require(security);
+  const vbar::fsw::Result<packets::PacketView> verified = authentication.verify(bytes, packet);
+  VBAR_FUZZ_EXPECT(verified.ok() != packets::is_telecommand_apid(packet.header.apid));
+  VBAR_FUZZ_EXPECT(!verified.ok() || verified.value().payload.size() == packet.payload.size());
+}
+
 void try_packet(std::span<const std::uint8_t> bytes) {
   static packets::Reassembler<4000> reassembler({packets::Apid::kTick, 0, 0});
   const vbar::fsw::Result<packets::PacketView> packet = packets::parse_packet(bytes);
@@ -36,6 +48,7 @@ void try_packet(std::span<const std::uint8_t> bytes) {
   VBAR_FUZZ_EXPECT(packet.value().payload.data() + packet.value().payload.size() <= bytes.data() + bytes.size());
   packets::for_each_message([&]<class Message>() { expect_same_bytes_back<Message>(bytes, packet.value()); });
   static_cast<void>(reassembler.push(packet.value()));
+  try_authentication(bytes, packet.value());
 }
 
 /// The input after its first byte as fields of message number `chosen`, type hash in front.

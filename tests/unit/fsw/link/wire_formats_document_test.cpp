@@ -13,6 +13,7 @@
 
 #include "fsw/link/frame.h"
 #include "fsw/packets/messages.h"
+#include "fsw/packets/security_trailer.h"
 #include "fsw/vision/imaging/image_assembly.h"
 #include "tests/support/paths.h"
 
@@ -72,6 +73,22 @@ TEST(WireFormatsDocument, StreamIsRight) {
   Bytes stream(link::kMaxCobsFrameBytes);
   stream.resize(link::cobs_encode(example_frame(), stream).value());
   EXPECT_EQ(block("stream"), stream);
+}
+
+// The code of the example is that of Python's hmac.
+TEST(WireFormatsDocument, AuthenticatedTelecommandIsRight) {
+  vbar::fault_command command{};
+  command.clear = 4;
+  packets::PacketHeader header;
+  header.time.ns = 1'400'000'000'123'456'789;
+  header.spacecraft = 1;
+  Bytes plain(packets::kMaxPacketBytes), secured(packets::kMaxPacketBytes);
+  plain.resize(packets::encode(header, command, plain).value());
+  packets::TelecommandKey key{};
+  for (std::size_t k = 0; k < key.size(); ++k) key[k] = static_cast<std::uint8_t>(k);
+  const packets::HmacSha256 hmac(key);
+  secured.resize(packets::write_secured(plain, hmac, 1, packets::sequence_at(1'767'225'600, 5), secured).value());
+  EXPECT_EQ(block("secured"), secured);
 }
 
 TEST(WireFormatsDocument, PixelsAreRight) {
