@@ -8,6 +8,12 @@
 #include "fsw/packets/big_endian.h"
 #include "fsw/packets/messages.h"
 
+// Optional functions: an image whose flight software lacks them has null in their place.
+extern "C" {
+[[gnu::weak]] vbar_status vbar_gnc_authenticate(void* state, const uint8_t* key, uint16_t index, uint64_t sequence);
+[[gnu::weak]] uint64_t vbar_gnc_telecommand_sequence(const void* state);
+}
+
 namespace vbar::boards {
 namespace {
 
@@ -107,7 +113,15 @@ void FlightExecutive::answer_hello() {
   FrameHeader header;
   header.type = FrameType::kHelloAck;
   header.session = session_;
-  send_frame(header, bytes_of(hello_text_));
+  // One buffer, of which the text of a board or of an error takes at most kMaxHelloText bytes.
+  constexpr std::size_t kSuffixBytes = sizeof(kAuthenticates) - 1;
+  std::array<std::uint8_t, kMaxHelloText + kSuffixBytes> text{};
+  const std::span<const std::uint8_t> name = bytes_of(hello_text_);
+  std::copy(name.begin(), name.end(), text.begin());
+  const bool has_suffix = can_fly_ && platform_.telecommand_security != nullptr;
+  const std::span<const std::uint8_t> suffix = bytes_of(has_suffix ? kAuthenticates : "");
+  std::copy(suffix.begin(), suffix.end(), text.begin() + static_cast<std::ptrdiff_t>(name.size()));
+  send_frame(header, std::span(text).first(name.size() + suffix.size()));
 }
 
 void FlightExecutive::lose_session(std::uint32_t session, const char* error) {
@@ -168,11 +182,25 @@ const char* FlightExecutive::start_flight_software(std::uint8_t spacecraft) {
   if (vbar_gnc_state_size() > gnc_state_.size())
     return "error: the flight software's state is larger than the board allows";
   if (!alignment_fits(vbar_gnc_state_alignment())) return "error: the flight software's state needs another alignment";
+  if (has_state_ && platform_.telecommand_security != nullptr)
+    telecommand_sequence_ = std::max(telecommand_sequence_, vbar_gnc_telecommand_sequence(gnc_state_.data()));
+  has_state_ = false;
   // Padding included, the state is a function of what the flight software received.
   std::memset(gnc_state_.data(), 0, vbar_gnc_state_size());
   if (vbar_gnc_init(gnc_state_.data(), spacecraft_, &FlightExecutive::sink, this) != 0) {
     return "error: the flight software refused to start";
   }
+  return require_authentication();
+}
+
+const char* FlightExecutive::require_authentication() {
+  const fsw::packets::TelecommandSecurity* security = platform_.telecommand_security;
+  if (security == nullptr) return nullptr;
+  if (vbar_gnc_authenticate == nullptr || vbar_gnc_telecommand_sequence == nullptr)
+    return "error: the board has a key of telecommands, and its flight software does not authenticate them";
+  if (vbar_gnc_authenticate(gnc_state_.data(), security->key.data(), security->index, telecommand_sequence_) != 0)
+    return "error: the flight software refused the key of telecommands";
+  has_state_ = true;
   return nullptr;
 }
 
@@ -341,6 +369,8 @@ void FlightExecutive::close_step(std::span<const std::uint8_t> last_packet) {
   std::uint64_t cost = 0;
   if (time.ok()) {
     step_time_ = time.value();
+    if (platform_.telecommand_security != nullptr && platform_.telecommands_accepted != nullptr)
+      platform_.telecommands_accepted(platform_.context, vbar_gnc_telecommand_sequence(gnc_state_.data()));
     const std::uint64_t before = read_counter();
     // A failed step is reported in the flight software's telemetry; the barrier closes in either case.
     static_cast<void>(vbar_gnc_step(gnc_state_.data(), step_time_.ns));

@@ -16,6 +16,7 @@
 #include "fsw/link/batch.h"
 #include "fsw/link/frame.h"
 #include "fsw/messaging/vbar_gnc.h"
+#include "fsw/packets/security_trailer.h"
 
 namespace vbar::boards {
 
@@ -42,7 +43,15 @@ struct Platform {
   bool (*open_receiver)(void* context, std::uint32_t baud) = nullptr;
   /// Moves the received bytes of that line to `out` and returns their number. Null as above.
   std::size_t (*read_receiver)(void* context, std::span<std::uint8_t> out) = nullptr;
+  /// Key that telecommands need. Null: they need none.
+  const fsw::packets::TelecommandSecurity* telecommand_security = nullptr;
+  /// Notifies a board that retains it through a reset of the sequence number that telecommands must exceed, before each
+  /// step executes those that have arrived. May be null.
+  void (*telecommands_accepted)(void* context, std::uint64_t sequence) = nullptr;
 };
+
+/// Follows the name of a board in the answer to a hello, if its telecommands need a key.
+inline constexpr char kAuthenticates[] = ", telecommands authenticated";
 
 /// Room for the flight software's state (vbar_gnc_state_size() must not exceed it), and how it is aligned.
 inline constexpr std::size_t kGncStateBytes = std::size_t{8} * 1024 * 1024;
@@ -67,10 +76,15 @@ struct Hello {
 /// answered again. A flight software that does not fit this executive is never run: the kHelloAck states the reason
 /// ("error: ..."). A step that exceeds its budget is the last one: its answer remains available, and frames of the next
 /// step are answered by a kHelloAck with the reason.
+///
+/// With a key each flight software demands sequence numbers above those of all before it, so that a new session does
+/// not accept the telecommands of an earlier one.
 class FlightExecutive {
  public:
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): gnc_state_ is cleared when a session begins
-  explicit FlightExecutive(const Platform& platform) : platform_(platform) {}
+  explicit FlightExecutive(const Platform& platform)
+      : platform_(platform),
+        telecommand_sequence_(platform.telecommand_security == nullptr ? 0 : platform.telecommand_security->sequence) {}
   FlightExecutive(const FlightExecutive&) = delete;
   FlightExecutive& operator=(const FlightExecutive&) = delete;
 
@@ -119,6 +133,8 @@ class FlightExecutive {
   const char* start(const std::optional<Hello>& hello);
   /// Constructs the flight software. Returns null, or else the text for the host.
   const char* start_flight_software(std::uint8_t spacecraft);
+  /// Gives the key of the board to the new flight software. Null, or else the text for the host.
+  const char* require_authentication();
   /// Opens the receiver's line, if the hello asks for it. Returns null, or else the text for the host.
   const char* open_receiver(const std::optional<std::uint32_t>& baud);
   void close_receiver();
@@ -138,12 +154,14 @@ class FlightExecutive {
   Platform platform_;
   Counters counters_;
   bool has_session_ = false;
+  bool has_state_ = false;   ///< gnc_state_ holds a flight software, running or not
   bool can_fly_ = false;     ///< a flight software is running in gnc_state_
   bool has_answer_ = false;  ///< outbox_ holds the answer of inputs_.step()
   std::uint32_t session_ = 0;
   std::uint8_t spacecraft_ = 0;
   std::uint16_t report_count_ = 0;
-  std::uint64_t step_budget_ = 0;  ///< 0: none
+  std::uint64_t step_budget_ = 0;       ///< 0: none
+  std::uint64_t telecommand_sequence_;  ///< which telecommands must exceed; of a session that has begun, at its begin
   fsw::GpsTime step_time_;
   const char* hello_text_ = "";
   fsw::link::BatchReceiver inputs_;

@@ -6,26 +6,31 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <new>
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "boards/common/flight_executive.h"
 #include "boards/posix/links.h"
 #include "boards/posix/stack_meter.h"
+#include "fsw/packets/security_trailer.h"
 
 namespace vbar::boards::posix {
 namespace {
 
 constexpr const char* kUsage =
-    "usage: %s LINK [--receiver DEVICE]\n"
+    "usage: %s LINK [--receiver DEVICE] [--telecommand-key FILE]\n"
     "the flight software as a process of its own; LINK is one of\n"
     "  --serial DEVICE [--baud N]             a serial device or pseudo-terminal, 921600 baud unless said otherwise\n"
     "  --unix PATH                            a Unix stream socket on which the host listens\n"
     "  --udp ADDRESS:PORT [--peer HOST:PORT]  listen for datagrams; without --peer, of the first sender of a hello\n"
     "  --stream FD                            an open stream, inherited\n"
     "  --datagram FD [--peer HOST:PORT]       a bound UDP socket, inherited\n"
-    "DEVICE is the serial device of a GNSS receiver that is wired to this flight computer\n";
+    "DEVICE is the serial device of a GNSS receiver that is wired to this flight computer\n"
+    "FILE holds the key that telecommands need: 64 hexadecimal digits, readable by its owner alone\n";
 
 struct Options {
   const char* serial = nullptr;
@@ -35,6 +40,7 @@ struct Options {
   const char* datagram = nullptr;
   const char* peer = nullptr;
   const char* receiver = nullptr;
+  const char* telecommand_key = nullptr;
   const char* baud = "921600";
 };
 
@@ -43,10 +49,15 @@ bool parse(int argc, char** argv, Options& options) {
     const char* name;
     const char** value;
   };
-  const std::array known{Known{"--serial", &options.serial},     Known{"--unix", &options.unix_path},
-                         Known{"--udp", &options.udp},           Known{"--stream", &options.stream},
-                         Known{"--datagram", &options.datagram}, Known{"--peer", &options.peer},
-                         Known{"--baud", &options.baud},         Known{"--receiver", &options.receiver}};
+  const std::array known{Known{"--serial", &options.serial},
+                         Known{"--unix", &options.unix_path},
+                         Known{"--udp", &options.udp},
+                         Known{"--stream", &options.stream},
+                         Known{"--datagram", &options.datagram},
+                         Known{"--peer", &options.peer},
+                         Known{"--baud", &options.baud},
+                         Known{"--receiver", &options.receiver},
+                         Known{"--telecommand-key", &options.telecommand_key}};
   for (int i = 1; i < argc; i += 2) {
     const char** value = nullptr;
     for (const Known& option : known) {
@@ -91,6 +102,28 @@ int open_datagram(const Options& options) {
 /// Its memory is static, because it is large; it is constructed when its link exists.
 alignas(FlightExecutive) std::array<std::byte, sizeof(FlightExecutive)> executive_memory;
 
+/// Reads the key, whose sequence numbers begin with the present time of this computer's clock. Returns null, or else
+/// the reason why there is none.
+const char* read_key(const char* path, fsw::packets::TelecommandSecurity& security) {
+  const int fd = ::open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
+  if (fd < 0) return std::strerror(errno);
+  struct stat status {};
+  std::array<char, 128> text{};
+  const bool is_file = ::fstat(fd, &status) == 0 && S_ISREG(status.st_mode);
+  const ssize_t size = is_file ? ::read(fd, text.data(), text.size()) : -1;
+  ::close(fd);
+  if (size < 0) return "not a file that can be read";
+  if ((status.st_mode & (S_IRWXG | S_IRWXO)) != 0) return "accessible to others than its owner (chmod 600)";
+  const auto key = fsw::packets::parse_telecommand_key(std::span(text).first(static_cast<std::size_t>(size)));
+  if (!key.ok() || static_cast<std::size_t>(size) == text.size()) return "not 64 hexadecimal digits";
+  timespec now{};
+  if (::clock_gettime(CLOCK_REALTIME, &now) != 0) return std::strerror(errno);
+  security.key = key.value();
+  security.index = fsw::packets::kHostKeyIndex;
+  security.sequence = fsw::packets::sequence_at(now.tv_sec, now.tv_nsec);
+  return nullptr;
+}
+
 std::uint32_t measure_stack(void* /*context*/) {
   return stack_high_water();
 }
@@ -100,6 +133,7 @@ struct Flight {
   const char* name;
   Link* link;
   ReceiverLine* receiver;
+  const fsw::packets::TelecommandSecurity* security;
   LinkEnd end;
 
   static Flight& of(void* context) { return *static_cast<Flight*>(context); }
@@ -118,6 +152,7 @@ struct Flight {
     platform.stack_high_water = &measure_stack;
     platform.open_receiver = &Flight::open_receiver;
     platform.read_receiver = &Flight::read_receiver;
+    platform.telecommand_security = flight.security;
     auto* const executive = ::new (static_cast<void*>(executive_memory.data())) FlightExecutive(platform);
     flight.end = flight.link->serve(*executive, flight.receiver);
   }
@@ -126,7 +161,14 @@ struct Flight {
 template <class Link>
 int fly(const char* name, Link& link, const Options& options) {
   ReceiverLine receiver(options.receiver);
-  Flight<Link> flight{name, &link, &receiver, LinkEnd::kFailed};
+  fsw::packets::TelecommandSecurity security;
+  const char* const path = options.telecommand_key;
+  const char* const fault = path == nullptr ? nullptr : read_key(path, security);
+  if (fault != nullptr) {
+    std::fprintf(stderr, "%s: key of telecommands %s: %s\n", name, path, fault);
+    return 1;
+  }
+  Flight<Link> flight{name, &link, &receiver, path == nullptr ? nullptr : &security, LinkEnd::kFailed};
   if (run_on_measured_stack(&Flight<Link>::fly, &flight) && flight.end != LinkEnd::kFailed) return 0;
   std::fprintf(stderr, "%s: the link failed: %s\n", name, std::strerror(errno));
   return 1;

@@ -21,6 +21,8 @@ struct FlightRecord {
   std::uint32_t port = 0;                 ///< port of the peer; the following are the peer's too
   std::array<std::uint8_t, 4> address{};  ///< IPv4
   std::array<std::uint8_t, 8> mac{};      ///< the first 6
+  /// Sequence number that telecommands must exceed, its upper and its lower half; 0 without a key.
+  std::array<std::uint32_t, 2> telecommand_sequence{};
 };
 using RecordWords = std::array<std::uint32_t, sizeof(FlightRecord) / sizeof(std::uint32_t)>;
 
@@ -43,6 +45,14 @@ constexpr std::uint32_t checksum_of(const FlightRecord& record) {
 /// Writes the peer of the session to the words of a record; the next function reads it.
 void set_peer(FlightRecord& record, const Sender& sender);
 Sender peer_of(const FlightRecord& record);
+
+/// Sequence number in two halves.
+constexpr std::array<std::uint32_t, 2> halves_of(std::uint64_t sequence) {
+  return {static_cast<std::uint32_t>(sequence >> 32U), static_cast<std::uint32_t>(sequence & 0xFFFF'FFFFU)};
+}
+constexpr std::uint64_t sequence_of(const FlightRecord& record) {
+  return static_cast<std::uint64_t>(record.telecommand_sequence[0]) << 32U | record.telecommand_sequence[1];
+}
 
 /// Writes the reason why the session of `record` has ended, for its host: "error: ...", zero-terminated.
 void describe_reset(const FlightRecord& record, std::span<char, 120> text);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "boards/common/flight_executive.h"
 #include "boards/zynq7000/clocks.h"
@@ -16,6 +17,7 @@
 #include "boards/zynq7000/semihosting.h"
 #include "boards/zynq7000/session_guard.h"
 #include "boards/zynq7000/stack_meter.h"
+#include "boards/zynq7000/telecommand_key.h"
 #include "boards/zynq7000/timer.h"
 #include "boards/zynq7000/uart.h"
 #include "boards/zynq7000/udp_endpoint.h"
@@ -38,7 +40,12 @@ constexpr std::uint64_t kMinWatchdogSpan = timer_span_ms(500);  // to start the 
 /// Flight computer of this board: both interfaces, the session guard and the executive.
 class FlightBoard {
  public:
-  explicit FlightBoard(const Restart& restart) : restart_(restart), executive_(platform()) {}
+  explicit FlightBoard(const Restart& restart)
+      : restart_(restart),
+        security_(telecommand_security(kTelecommandKeySettings, restart.has_record ? sequence_of(restart.record) : 0)),
+        executive_(platform()) {
+    record_.telecommand_sequence = halves_of(security_ ? security_->sequence : 0);
+  }
 
   [[noreturn]] void run();
 
@@ -57,6 +64,7 @@ class FlightBoard {
 
   static void session_begins(void* self, std::uint32_t session, std::uint64_t step_budget);
   static void step_begins(void* self, std::uint32_t step);
+  static void telecommands_accepted(void* self, std::uint64_t sequence);
   static void step_ends(void* self, bool within_budget);
   static bool open_receiver(void* self, std::uint32_t baud);
   static std::size_t read_receiver(void* self, std::span<std::uint8_t> out);
@@ -77,6 +85,7 @@ class FlightBoard {
   std::array<std::uint8_t, fsw::link::kMaxCobsFrameBytes> coded_{};
   Restart restart_;
   std::array<char, 120> restart_text_{};
+  std::optional<fsw::packets::TelecommandSecurity> security_;
   FlightRecord record_;  ///< record of this flight, as it is retained
   FlightExecutive executive_;
 };
@@ -115,6 +124,8 @@ Platform FlightBoard::platform() {
   platform.step_ends = &FlightBoard::step_ends;
   platform.open_receiver = &FlightBoard::open_receiver;
   platform.read_receiver = &FlightBoard::read_receiver;
+  platform.telecommand_security = security_ ? &*security_ : nullptr;
+  platform.telecommands_accepted = &FlightBoard::telecommands_accepted;
   return platform;
 }
 
@@ -128,6 +139,7 @@ void FlightBoard::open() {
   print(counts_cycles() ? "processor cycles" : "ticks of the emulated timer");
   print("\nlink on UART0 and on UDP ");
   print_address(kNetworkSettings);
+  print(security_ ? ", telecommands authenticated" : "");
   print(", Ethernet ");
   print(ethernet_.waits_for_link() ? "waits for a link" : "up");
   print("\nready\n");
@@ -265,8 +277,11 @@ void FlightBoard::print_counters() const {
 
 void FlightBoard::session_begins(void* self, std::uint32_t session, std::uint64_t step_budget) {
   auto* const board = static_cast<FlightBoard*>(self);
+  // Through a reset before the first step of this session, telecommands of the one before stay refused.
+  const auto telecommand_sequence = board->record_.telecommand_sequence;
   board->record_ = {};
   board->record_.session = session;
+  board->record_.telecommand_sequence = telecommand_sequence;
   set_peer(board->record_, board->guard_.peer());
   retain(board->record_);
   watchdog_start(watchdog_span(step_budget));
@@ -276,6 +291,12 @@ void FlightBoard::step_begins(void* self, std::uint32_t step) {
   auto* const board = static_cast<FlightBoard*>(self);
   board->record_.step = step;
   board->record_.in_step = 1;
+  retain(board->record_);
+}
+
+void FlightBoard::telecommands_accepted(void* self, std::uint64_t sequence) {
+  auto* const board = static_cast<FlightBoard*>(self);
+  board->record_.telecommand_sequence = halves_of(sequence);
   retain(board->record_);
 }
 

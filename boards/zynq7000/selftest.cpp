@@ -14,6 +14,7 @@
 #include "boards/zynq7000/memory_map.h"
 #include "boards/zynq7000/stack_meter.h"
 #include "boards/zynq7000/timer.h"
+#include "fsw/packets/security_trailer.h"
 
 namespace vbar::boards::zynq7000 {
 namespace {
@@ -156,6 +157,36 @@ void check_ethernet() {
   check(!ethernet.waits_for_link(), "the PHY answers and has a link");
 }
 
+// The largest telecommand with a trailer; the cost of its verification is printed, for the host to judge.
+void check_authentication() {
+  namespace packets = fsw::packets;
+  static std::array<std::uint8_t, packets::kMaxSecuredPayloadBytes> payload{};
+  static std::array<std::uint8_t, packets::kMaxPacketBytes> plain{};
+  static std::array<std::uint8_t, packets::kMaxPacketBytes> secured{};
+  packets::TelecommandSecurity security{.index = packets::kHostKeyIndex, .sequence = 1};
+  for (std::size_t k = 0; k < security.key.size(); ++k) {
+    security.key[k] = static_cast<std::uint8_t>(k);
+  }
+  packets::PacketHeader header;
+  header.apid = packets::Apid::kTargetModel;
+  const auto plain_size = packets::write_packet(header, payload, plain);
+  const auto size = packets::write_secured(std::span(plain).first(plain_size.value()),
+                                           packets::HmacSha256(security.key), security.index, 2, secured);
+  check(size.ok() && size.value() == secured.size(), "a telecommand of the largest size has room for its trailer");
+  packets::TelecommandAuthentication authentication;
+  authentication.require(security);
+  const auto parsed = packets::parse_packet(secured);
+  const std::uint64_t start = cost_counter();
+  const auto verified = authentication.verify(secured, parsed.value());
+  const std::uint64_t cost = cost_counter() - start;
+  check(verified.ok(), "an authentic telecommand is accepted");
+  check(authentication.verify(secured, parsed.value()).status() == fsw::Status::kBadSequence,
+        "and refused a second time");
+  print("verification of a telecommand: ");
+  print_decimal(static_cast<std::uint32_t>(cost));
+  print(" counts\n");
+}
+
 [[gnu::noinline]] int recurse(int depth) {
   std::array<volatile int, 64> frame{};
   frame[static_cast<std::size_t>(depth) % frame.size()] = depth;
@@ -207,6 +238,7 @@ int main() {
   check_interrupts();
   check_deferral();
   check_ethernet();
+  check_authentication();
   print(failures == 0 ? "self-test passed\n" : "self-test FAILED\n");
   semihosting_exit(static_cast<std::uint32_t>(failures == 0 ? ExitCode::kDone : ExitCode::kSelfTestFailed));
   for (;;) {

@@ -56,7 +56,7 @@ elseif(VBAR_TARGET STREQUAL "zynq7000")
     ARCHIVE DESTINATION ${board})
   set(source ${PROJECT_SOURCE_DIR}/boards/zynq7000)
   install(FILES ${source}/zynq7000.ld ${source}/check_image.cmake ${source}/zynq7000_image.cmake ${source}/boot.bif ${source}/jtag.gdb DESTINATION ${board})
-  install(PROGRAMS ${source}/set_address.py DESTINATION ${board})
+  install(PROGRAMS ${source}/set_address.py ${source}/set_telecommand_key.py DESTINATION ${board})
 endif()
 
 # `cpack --config build/host/CPackConfig.cmake`: a Debian package of what this build installs, and of the bare Zynq's build if it is

@@ -8,6 +8,7 @@ missing: then there is nothing to test."""
 import ctypes
 import math
 import os
+import re
 import shutil
 import struct
 import subprocess
@@ -439,6 +440,50 @@ class ZynqSmoke(unittest.TestCase):
             with self.subTest(name), EmulatedBoard(image, arguments=arguments) as board:
                 self.assertEqual(board.wait(), code, board.console())
                 self.assertIn(text, board.console())
+                if not name:
+                    self.check_verification(board.console())
+
+    def check_verification(self, console):
+        """The emulated timer counts every 10 ns, and an instruction takes 32 (icount shift 5)."""
+        ticks = int(re.search(r"verification of a telecommand: (\d+) counts", console).group(1))
+        instructions = ticks * 10 // 32
+        print(f"verification of a telecommand of 1376 bytes: {instructions} instructions")
+        self.assertGreater(instructions, 10_000)  # 23 blocks of 64 rounds, and not nothing
+        self.assertLessEqual(instructions, 200_000)
+
+    def test_telecommand_key(self):
+        """A copy of the image with a key demands trailers, and neither the copy nor the console shows its key to others."""
+        image = os.path.join(self.image_folder, "vbar_zynq7000.elf")
+        script = os.path.join(os.path.dirname(__file__), "../../../boards/zynq7000/set_telecommand_key.py")
+        with tempfile.TemporaryDirectory(prefix="vbar-zynq-") as folder:
+            key, copy = os.path.join(folder, "key"), os.path.join(folder, "keyed.elf")
+            digits = os.urandom(32).hex()
+
+            def run(*arguments):
+                return subprocess.run([sys.executable, script, *arguments], capture_output=True, text=True)
+
+            def write(text, mode=0o600):
+                with open(key, "w", encoding="ascii") as out:
+                    out.write(text)
+                os.chmod(key, mode)
+
+            self.assertIn("no key", run(image).stdout)
+            for text, mode, reason in ((digits[1:], 0o600, "64 hexadecimal digits"), (digits, 0o640, "accessible to others")):
+                write(text, mode)
+                refused = run(image, "--key", key, "--out", copy)
+                self.assertEqual((refused.returncode, os.path.exists(copy)), (1, False))
+                self.assertIn(reason, refused.stderr)
+            write(digits + "\n")
+            made = run(image, "--key", key, "--out", copy)
+            self.assertEqual(made.returncode, 0, made.stderr)
+            self.assertIn("index 1", made.stdout + run(copy).stdout)
+            self.assertEqual(os.stat(copy).st_mode & 0o077, 0)
+            with EmulatedBoard(copy) as board:
+                session = Session(SerialLine(board.serial), 13)
+                self.assertTrue(session.hello().endswith("telecommands authenticated"))
+                session.goodbye()
+                self.assertEqual(board.wait(), 0, board.console())
+                self.assertNotIn(digits, board.console() + made.stdout)
 
 
 def main():

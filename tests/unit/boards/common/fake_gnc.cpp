@@ -41,7 +41,13 @@ FakeGncSettings& fake_gnc_settings() {
   return settings;
 }
 
+std::vector<FakeKey>& fake_gnc_keys() {
+  static std::vector<FakeKey> keys;
+  return keys;
+}
+
 void reset_fake_gnc() {
+  fake_gnc_keys().clear();
   fake_gnc_settings() = FakeGncSettings{};
   fake_gnc_settings().step_output = default_output;
   steps = 0;
@@ -89,6 +95,15 @@ vbar_status vbar_gnc_init(void* state, uint8_t spacecraft, vbar_packet_sink sink
 void vbar_gnc_set_sink(void* state, vbar_packet_sink sink, void* sink_context) {
   static_cast<State*>(state)->sink = sink;
   static_cast<State*>(state)->context = sink_context;
+}
+
+vbar_status vbar_gnc_authenticate(void* /*state*/, const uint8_t* key, uint16_t index, uint64_t sequence) {
+  vbar::testing::fake_gnc_keys().push_back({{key, key + VBAR_GNC_KEY_BYTES}, index, sequence});
+  return vbar::testing::fake_gnc_settings().authenticate_status;
+}
+
+uint64_t vbar_gnc_telecommand_sequence(const void* /*state*/) {
+  return vbar::testing::fake_gnc_settings().sequence_reached;
 }
 
 vbar_status vbar_gnc_receive(void* state, const uint8_t* packet, size_t size) {

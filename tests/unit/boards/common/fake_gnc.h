@@ -23,7 +23,17 @@ struct FakeGncSettings {
   std::function<std::vector<Bytes>(std::uint64_t digest)> step_output;
   /// Packets said while it is made.
   std::vector<Bytes> init_output;
+  vbar_status authenticate_status = 0;
+  std::uint64_t sequence_reached = 0;  ///< of the telecommands that it claims to have accepted
 };
+
+/// What it was given by vbar_gnc_authenticate since reset_fake_gnc(), call by call.
+struct FakeKey {
+  Bytes key;
+  std::uint16_t index = 0;
+  std::uint64_t sequence = 0;
+};
+std::vector<FakeKey>& fake_gnc_keys();
 
 FakeGncSettings& fake_gnc_settings();
 

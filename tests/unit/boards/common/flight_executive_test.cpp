@@ -2,8 +2,10 @@
 
 #include "boards/common/flight_executive.h"
 
+#include <algorithm>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -197,6 +199,74 @@ INSTANTIATE_TEST_SUITE_P(
                       Misfit{"alignment", [](testing::FakeGncSettings& s) { s.state_alignment = 128; }},
                       Misfit{"alignment", [](testing::FakeGncSettings& s) { s.state_alignment = 0; }},
                       Misfit{"start", [](testing::FakeGncSettings& s) { s.init_status = 1; }}));
+
+class FlightExecutiveWithKey : public FlightExecutiveTest {
+ protected:
+  FlightExecutiveWithKey() {
+    for (std::size_t k = 0; k < security_.key.size(); ++k) security_.key[k] = static_cast<std::uint8_t>(3 * k);
+    Platform keyed = platform(this);
+    keyed.telecommand_security = &security_;
+    keyed.telecommands_accepted = [](void* context, std::uint64_t sequence) {
+      auto* const self = static_cast<FlightExecutiveWithKey*>(context);
+      self->accepted_.push_back({sequence, testing::fake_gnc_steps()});
+    };
+    board_ = std::make_unique<FlightExecutive>(keyed);
+  }
+
+  struct Accepted {
+    std::uint64_t sequence;
+    int steps;  ///< run before
+  };
+  fsw::packets::TelecommandSecurity security_{.index = 7, .sequence = 1000};
+  std::vector<Accepted> accepted_;
+};
+
+TEST_F(FlightExecutiveWithKey, GivesTheKeyToEachFlightSoftwareAndTellsTheHost) {
+  EXPECT_EQ(hello(), std::string("unit") + kAuthenticates);
+  ASSERT_EQ(testing::fake_gnc_keys().size(), 1U);
+  const testing::FakeKey& given = testing::fake_gnc_keys().front();
+  EXPECT_TRUE(std::ranges::equal(given.key, security_.key));
+  EXPECT_EQ(given.index, 7);
+  EXPECT_EQ(given.sequence, 1000U);
+}
+
+// Otherwise a hello would make telecommands of the session before acceptable again.
+TEST_F(FlightExecutiveWithKey, ANewSessionBeginsWithTheSequenceNumberThatTheOldOneReached) {
+  hello();
+  fake_gnc_settings().sequence_reached = 5000;
+  tick(0);
+  hello(kSession + 1);
+  fake_gnc_settings().sequence_reached = 4000;  // a flight software that counts backwards
+  hello(kSession + 2);
+  ASSERT_EQ(testing::fake_gnc_keys().size(), 3U);
+  EXPECT_EQ(testing::fake_gnc_keys()[1].sequence, 5000U);
+  EXPECT_EQ(testing::fake_gnc_keys()[2].sequence, 5000U);
+}
+
+TEST_F(FlightExecutiveWithKey, TheBoardIsToldTheSequenceNumberBeforeTheStep) {
+  hello();
+  fake_gnc_settings().sequence_reached = 2000;
+  tick(0);
+  fake_gnc_settings().sequence_reached = 3000;
+  tick(1);
+  ASSERT_EQ(accepted_.size(), 2U);
+  EXPECT_EQ(accepted_[0].sequence, 2000U);
+  EXPECT_EQ(accepted_[0].steps, 0);
+  EXPECT_EQ(accepted_[1].sequence, 3000U);
+  EXPECT_EQ(accepted_[1].steps, 1);
+}
+
+TEST_F(FlightExecutiveWithKey, AFlightSoftwareThatRefusesTheKeyIsNeverRun) {
+  fake_gnc_settings().authenticate_status = 1;
+  EXPECT_THAT(hello(), ::testing::HasSubstr("refused the key"));
+  expect_refusal(tick(0), "refused the key");
+  EXPECT_EQ(testing::fake_gnc_steps(), 0);
+}
+
+TEST_F(FlightExecutiveTest, GivesNoKeyThatItDoesNotHave) {
+  hello();
+  EXPECT_TRUE(testing::fake_gnc_keys().empty());
+}
 
 /// Of a spacecraft without a receiver on a line, with a budget (big-endian).
 Bytes hello_with_budget(std::uint8_t budget_high, std::uint8_t budget_low) {

@@ -10,6 +10,7 @@
 #include "boards/zynq7000/byte_ring.h"
 #include "boards/zynq7000/flight_record.h"
 #include "boards/zynq7000/session_guard.h"
+#include "boards/zynq7000/telecommand_key.h"
 #include "fsw/link/frame.h"
 
 namespace vbar::boards::zynq7000 {
@@ -75,6 +76,27 @@ std::string description(const FlightRecord& record) {
   text.fill('x');
   describe_reset(record, text);
   return text.data();
+}
+
+TEST(TelecommandKeyOfTheImage, IsNoneWithIndexZero) {
+  EXPECT_FALSE(telecommand_security({}, 5).has_value());
+}
+
+// The larger sequence number counts: a record of a flight that an image with a newer key follows is of the past.
+TEST(TelecommandKeyOfTheImage, IsThatOfItsBytesAndOfTheFlightBeforeAReset) {
+  TelecommandKeySettings settings{};
+  settings.index = {0x12, 0x34};
+  settings.sequence = {0, 0, 0, 1, 0, 0, 0, 2};
+  settings.key[31] = 9;
+  FlightRecord record;
+  record.telecommand_sequence = halves_of(0x1'0000'0003);
+  EXPECT_EQ(sequence_of(record), 0x1'0000'0003U);
+  const auto cold = telecommand_security(settings, 0);
+  ASSERT_TRUE(cold.has_value());
+  EXPECT_EQ(cold->index, 0x1234);
+  EXPECT_EQ(cold->sequence, 0x1'0000'0002U);
+  EXPECT_EQ(cold->key[31], 9);
+  EXPECT_EQ(telecommand_security(settings, sequence_of(record))->sequence, 0x1'0000'0003U);
 }
 
 // After power-on the memory holds anything: zeros, ones, or a record in which bits have decayed.
