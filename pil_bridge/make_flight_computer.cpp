@@ -8,10 +8,12 @@
 #include <utility>
 #include <vector>
 
+#include "boards/common/flight_executive.h"
 #include "host_sim/io/byte_channel.h"
 #include "host_sim/io/udp_socket.h"
 #include "pil_bridge/qemu.h"
 #include "pil_bridge/remote_computer.h"
+#include "pil_bridge/telecommand_security.h"
 #include "pil_bridge/test_article.h"
 #include "pil_bridge/transport.h"
 
@@ -120,10 +122,12 @@ RemoteParts parts_for(const FlightComputerOptions& options) {
   return parts;
 }
 
-/// Arguments of vbar_flight for its link and for the receiver that is wired to it.
+/// Arguments of vbar_flight for its link, for the receiver that is wired to it, and for its key of telecommands.
 std::vector<std::string> flight_arguments(const ChildLink& link, const FlightComputerOptions& options) {
   std::vector<std::string> arguments = link.flight_arguments;
   if (options.receiver) arguments.insert(arguments.end(), {"--receiver", options.receiver->device});
+  if (!options.telecommand_key_file.empty())
+    arguments.insert(arguments.end(), {"--telecommand-key", options.telecommand_key_file});
   return arguments;
 }
 
@@ -313,15 +317,45 @@ std::unique_ptr<FlightComputer> make_board(const FlightComputerOptions& options)
   return std::make_unique<RemoteComputer>(std::move(parts));
 }
 
-std::unique_ptr<FlightComputer> make_linked_or_loaded(const FlightComputerOptions& options) {
+using Security = std::optional<fsw::packets::TelecommandSecurity>;
+
+std::unique_ptr<FlightComputer> make_linked_or_loaded(const FlightComputerOptions& options, const Security& security) {
+  const auto* const demanded = security ? &*security : nullptr;
   if (!options.library.empty()) {
-    const auto make = [&] { return make_in_process(load_test_article(options.library), options.spacecraft); };
+    const auto make = [&] { return make_in_process(load_test_article(options.library), options.spacecraft, demanded); };
     return make_guarded(make, "flight_computer.library '" + options.library + "'", options.library_step_limit,
                         options.memory_bytes);
   }
   if (!options.article)
     throw FlightComputerError("in_process: this program is linked with no flight software; name a library");
-  return make_in_process(options.article, options.spacecraft);
+  return make_in_process(options.article, options.spacecraft, demanded);
+}
+
+std::unique_ptr<FlightComputer> make_unauthenticated(const FlightComputerOptions& options, const Security& security) {
+  switch (options.target) {
+    case Target::kInProcess:
+      return make_linked_or_loaded(options, security);
+    case Target::kHostProcess:
+      return make_host_process(options);
+    case Target::kZynqQemu:
+      return make_zynq_qemu(options);
+    case Target::kZynqLinuxQemu:
+      return make_zynq_linux_qemu(options);
+    case Target::kBoard:
+      return make_board(options);
+  }
+  throw FlightComputerError("unknown flight computer target");
+}
+
+/// Either all telecommands of a run are authenticated, or none.
+void check_ends(const FlightComputer& computer, const FlightComputerOptions& options) {
+  if (options.target == Target::kInProcess) return;
+  const bool demands = computer.description().ends_with(boards::kAuthenticates);
+  if (demands == !options.telecommand_key_file.empty()) return;
+  throw FlightComputerError(
+      "flight computer " + full_name(options) +
+      (demands ? ": it accepts authenticated telecommands only; state its key by flight_computer.telecommand_key_file"
+               : ": it has no key, as flight_computer.telecommand_key_file demands (docs/board_bringup.md)"));
 }
 
 }  // namespace
@@ -355,23 +389,15 @@ std::string software_file(const FlightComputerOptions& options) {
 
 std::unique_ptr<FlightComputer> make_flight_computer(const FlightComputerOptions& options) {
   check_receiver(options);
+  Security security;
+  if (!options.telecommand_key_file.empty()) security = read_telecommand_security(options.telecommand_key_file);
   try {
-    switch (options.target) {
-      case Target::kInProcess:
-        return make_linked_or_loaded(options);
-      case Target::kHostProcess:
-        return make_host_process(options);
-      case Target::kZynqQemu:
-        return make_zynq_qemu(options);
-      case Target::kZynqLinuxQemu:
-        return make_zynq_linux_qemu(options);
-      case Target::kBoard:
-        return make_board(options);
-    }
+    std::unique_ptr<FlightComputer> computer = make_unauthenticated(options, security);
+    check_ends(*computer, options);
+    return security ? make_authenticated(std::move(computer), *security) : std::move(computer);
   } catch (const LinkError& error) {
     throw FlightComputerError("flight computer " + full_name(options) + ": " + error.what());
   }
-  throw FlightComputerError("unknown flight computer target");
 }
 
 }  // namespace vbar::pil

@@ -66,6 +66,10 @@ struct FlightComputerOptions {
   /// 0: the default of the image.
   std::uint64_t step_budget = 0;
 
+  /// File of the key with which telecommands are authenticated (telecommand_security.h); empty: they are not. The
+  /// flight computer of targets zynq_qemu and board has the key already.
+  std::string telecommand_key_file = {};
+
   /// Largest memory of a library, or of a program that is started; 0: no limit.
   std::uint64_t memory_bytes = 0;
 
@@ -78,7 +82,8 @@ struct FlightComputerOptions {
 /// Throws FlightComputerError if there is no such image.
 std::string software_file(const FlightComputerOptions& options);
 
-/// Starts or finds the flight computer and waits until it answers. Throws FlightComputerError.
+/// Starts or finds the flight computer and waits until it answers. Throws FlightComputerError, also if one end of the
+/// link authenticates telecommands and the other does not.
 std::unique_ptr<FlightComputer> make_flight_computer(const FlightComputerOptions& options);
 
 }  // namespace vbar::pil

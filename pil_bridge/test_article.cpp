@@ -80,6 +80,8 @@ std::shared_ptr<const TestArticle> load_test_article(const std::string& library)
   resolve(path, handle, "vbar_gnc_set_sink", functions.set_sink);
   resolve(path, handle, "vbar_gnc_receive", functions.receive);
   resolve(path, handle, "vbar_gnc_step", functions.step);
+  // Optional: make_in_process states its absence.
+  functions.authenticate = reinterpret_cast<decltype(functions.authenticate)>(::dlsym(handle, "vbar_gnc_authenticate"));
   const std::int32_t version = functions.abi_version();
   if (version < VBAR_GNC_ABI_VERSION_MIN || version > VBAR_GNC_ABI_VERSION) {
     throw FlightComputerError("flight_computer.library '" + path + "' was built for version " +
@@ -130,13 +132,22 @@ class StateMemory {
 
 class InProcess final : public FlightComputer {
  public:
-  InProcess(std::shared_ptr<const TestArticle> article, std::uint8_t spacecraft)
+  InProcess(std::shared_ptr<const TestArticle> article, std::uint8_t spacecraft,
+            const fsw::packets::TelecommandSecurity* security)
       : article_(checked(std::move(article))), state_(article_->state_size(), article_->state_alignment()) {
     const vbar_status status = article_->init(state_.get(), spacecraft, &InProcess::sink, this);
     if (status != 0) {
       throw FlightComputerError("the flight software '" + std::string(article_->name()) +
                                 "' refused to start: status " + std::to_string(status));
     }
+    if (security == nullptr) return;
+    if (article_->authenticate == nullptr) {
+      throw FlightComputerError("the flight software '" + std::string(article_->name()) +
+                                "' does not authenticate telecommands (it has no function vbar_gnc_authenticate)");
+    }
+    if (article_->authenticate(state_.get(), security->key.data(), security->index, security->sequence) != 0)
+      throw FlightComputerError("the flight software '" + std::string(article_->name()) +
+                                "' refused the key of telecommands");
   }
 
   StepResult step(std::uint32_t /*step*/, std::span<const Packet> packets) override {
@@ -194,8 +205,9 @@ class InProcess final : public FlightComputer {
 
 }  // namespace
 
-std::unique_ptr<FlightComputer> make_in_process(std::shared_ptr<const TestArticle> article, std::uint8_t spacecraft) {
-  return std::make_unique<InProcess>(std::move(article), spacecraft);
+std::unique_ptr<FlightComputer> make_in_process(std::shared_ptr<const TestArticle> article, std::uint8_t spacecraft,
+                                                const fsw::packets::TelecommandSecurity* security) {
+  return std::make_unique<InProcess>(std::move(article), spacecraft, security);
 }
 
 namespace {

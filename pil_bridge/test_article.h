@@ -8,10 +8,12 @@
 #include <string>
 
 #include "fsw/messaging/vbar_gnc.h"
+#include "fsw/packets/security_trailer.h"
 #include "pil_bridge/flight_computer.h"
 
 // Optional functions: an article that is linked without them has null in their place.
 extern "C" {
+[[gnu::weak]] vbar_status vbar_gnc_authenticate(void* state, const uint8_t* key, uint16_t index, uint64_t sequence);
 [[gnu::weak]] size_t vbar_gnc_snapshot_size(void);
 [[gnu::weak]] vbar_status vbar_gnc_save(const void* state, uint8_t* snapshot, size_t size);
 [[gnu::weak]] vbar_status vbar_gnc_restore(void* state, const uint8_t* snapshot, size_t size);
@@ -28,6 +30,7 @@ struct TestArticle {
   decltype(&vbar_gnc_set_sink) set_sink = nullptr;
   decltype(&vbar_gnc_receive) receive = nullptr;
   decltype(&vbar_gnc_step) step = nullptr;
+  decltype(&vbar_gnc_authenticate) authenticate = nullptr;  ///< null in an article without authentication
   // null in an article without snapshots
   decltype(&vbar_gnc_snapshot_size) snapshot_size = nullptr;
   decltype(&vbar_gnc_save) save = nullptr;
@@ -44,6 +47,7 @@ inline std::shared_ptr<const TestArticle> linked_test_article() {
                                                          .set_sink = &vbar_gnc_set_sink,
                                                          .receive = &vbar_gnc_receive,
                                                          .step = &vbar_gnc_step,
+                                                         .authenticate = &vbar_gnc_authenticate,
                                                          .snapshot_size = &vbar_gnc_snapshot_size,
                                                          .save = &vbar_gnc_save,
                                                          .restore = &vbar_gnc_restore});
@@ -61,8 +65,10 @@ std::shared_ptr<const TestArticle> load_test_article(const std::string& library)
 // The flight software in this process, called through its C interface. The order of its inputs, and the handling of
 // its output, follow boards/common/flight_executive.cpp, so that the result is the same as on a board.
 
-/// Throws FlightComputerError if the article refuses to start.
-std::unique_ptr<FlightComputer> make_in_process(std::shared_ptr<const TestArticle> article, std::uint8_t spacecraft);
+/// `security`: demanded of telecommands, if not null. Throws FlightComputerError if the article refuses to start, or
+/// cannot authenticate telecommands that are to be.
+std::unique_ptr<FlightComputer> make_in_process(std::shared_ptr<const TestArticle> article, std::uint8_t spacecraft,
+                                                const fsw::packets::TelecommandSecurity* security = nullptr);
 
 // A flight computer in a child process, so that foreign flight software that crashes or never returns ends neither the
 // run's record nor the program. The price is two messages over a socket for each step; vbar's own flight software,

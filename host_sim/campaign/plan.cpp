@@ -212,6 +212,10 @@ std::string name_of(const Plan& plan, const Case& one) {
 void add_flight_software(const mission::Mission& mission, UsedFiles& used) {
   for (const mission::Spacecraft& spacecraft : mission.spacecraft) {
     if (!spacecraft.flight_computer) continue;
+    const std::string& key_file = spacecraft.flight_computer->telecommand_key_file;
+    if (!key_file.empty() && !fs::path(key_file).is_absolute())
+      throw app::Refused("flight_computer.telecommand_key_file: found the relative path " + key_file +
+                         "; accepted: an absolute path");
     const std::string file = app::flight_software_file(spacecraft);
     const mission::FlightTarget target = spacecraft.flight_computer->target;
     if (file.empty() && target != mission::FlightTarget::kInProcess && target != mission::FlightTarget::kBoard)

@@ -94,6 +94,7 @@ struct FlightComputer {
   int port = 0;         ///< board on UDP
   /// Largest cost of a step, beyond which the run fails: instructions on zynq_qemu, processor cycles on a board.
   std::int64_t step_budget = 0;
+  std::string telecommand_key_file;  ///< key of telecommands; empty: they are not authenticated
 };
 
 /// Settings that a kind of sensor has read from the table of one sensor: each kind derives its own settings.

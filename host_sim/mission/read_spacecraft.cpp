@@ -192,6 +192,7 @@ FlightComputer read_flight_computer(const TableReader& section) {
   const std::int64_t step_budget =
       computer.target == FlightTarget::kBoard ? kStepBudgetCycles : kStepBudgetInstructions;
   computer.step_budget = section.integer("step_budget", kMinStepBudget, kGreatestStepBudget, step_budget);
+  computer.telecommand_key_file = section.text("telecommand_key_file", "");
   if (computer.target == FlightTarget::kBoard) {
     if (computer.link == FlightLink::kSerial && computer.device.empty())
       section.refuse("device", "nothing", "the tty of the board, e.g. /dev/ttyUSB0");

@@ -32,6 +32,7 @@ pil::FlightComputerOptions options_for(const mission::Spacecraft& spacecraft) {
   options.library = wanted.library;
   options.step_budget = static_cast<std::uint64_t>(wanted.step_budget);
   options.image = wanted.image;
+  options.telecommand_key_file = wanted.telecommand_key_file;
   options.memory_bytes = io::kDefaultMemoryBytes;
   if (wanted.library.empty()) options.article = pil::linked_test_article();
   if (wanted.target == mission::FlightTarget::kBoard) {

@@ -51,11 +51,12 @@ void check_trust(const mission::Mission& mission, const std::filesystem::path& r
   if (is_trusted) return;
   const bool is_board = computer.target == mission::FlightTarget::kBoard;
   const bool is_serial = computer.link == mission::FlightLink::kSerial;
-  const std::array<std::pair<std::string_view, std::string>, 4> named{
+  const std::array<std::pair<std::string_view, std::string>, 5> named{
       {{"library", computer.library},
        {"image", computer.image},
        {"device", is_board && is_serial ? computer.device : ""},
-       {"address", is_board && !is_serial ? computer.address : ""}}};
+       {"address", is_board && !is_serial ? computer.address : ""},
+       {"telecommand_key_file", computer.telecommand_key_file}}};
   const auto refuse = [&](const std::string& path, const std::string& value) {
     throw Refused(fmt::format("{}: names {} = \"{}\", which is used only with --trust, or with --set",
                               run_folder.string(), path, value));

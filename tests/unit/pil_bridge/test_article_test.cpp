@@ -1,12 +1,14 @@
 #include "pil_bridge/test_article.h"
 
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include "pil_bridge/make_flight_computer.h"
 #include "tests/support/paths.h"
@@ -61,6 +63,28 @@ TEST(TestArticle, LoadingSaysWhatIsWrong) {
   EXPECT_THAT(error_of_loading(kLibraries + "libvbar_article_without_step.so"), HasSubstr("no function vbar_gnc_step"));
   EXPECT_THAT(error_of_loading(kLibraries + "libvbar_article_of_other_version.so"),
               HasSubstr("version 3 of the test-article interface, this program for 2"));
+}
+
+// Linked, and as a library in a child.
+TEST(TestArticle, AFlightSoftwareThatDoesNotAuthenticateIsNotStartedWithAKey) {
+  const std::string key = ::testing::TempDir() + "vbar-key-" + std::to_string(::getpid());
+  std::ofstream(key) << std::string(64, '5') << '\n';
+  std::filesystem::permissions(key, std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+  for (const std::string& library : {std::string(), vbar::tests::build_path("libvbar_echo_article.so")}) {
+    FlightComputerOptions options;
+    options.article = linked_test_article();
+    options.library = library;
+    options.telecommand_key_file = key;
+    std::string error = "no error";
+    try {
+      (void)make_flight_computer(options);
+    } catch (const FlightComputerError& thrown) {
+      error = thrown.what();
+    }
+    EXPECT_THAT(error, AllOf(HasSubstr("vbar link exerciser"), HasSubstr("does not authenticate telecommands")));
+    EXPECT_THAT(error, testing::Not(HasSubstr("5555")));
+  }
+  std::filesystem::remove(key);
 }
 
 // A library flies in a child process, with the same bits.
