@@ -15,7 +15,7 @@ import unittest
 from vbar_program import BINARY, MISSION, SOURCE, fly, hashes, main, overrides, scratch, vbar
 
 sys.path.insert(0, str(SOURCE / "tests" / "integration" / "zynq"))
-from board_link import DATA, GOODBYE, Frame, Packet, SerialLine, Session, cobs_encode, crc16, frame, tick  # noqa: E402
+from board_link import DATA, GOODBYE, Frame, Packet, SerialLine, Session, cobs_decode, cobs_encode, crc16, frame, tick  # noqa: E402
 
 FLIGHT = BINARY / "vbar_flight"
 APID_HEALTH, APID_TELECOMMAND_REPORT = 0x503, 0x508
@@ -83,6 +83,7 @@ class Adversary(threading.Thread):
         super().__init__(daemon=True)
         self.line, self.flight, self.change = line, flight, change
         self.telecommands = []
+        self.answers = b""
         self.has_ended = threading.Event()
 
     def run(self):
@@ -92,6 +93,8 @@ class Adversary(threading.Thread):
         line = SerialLine(to_host)
         try:
             while (data := line.receive(60)) is not None:
+                if not data:
+                    continue  # a zero byte ends what a line may have brought before
                 sent = Frame(data)
                 if sent.kind == GOODBYE:
                     break  # the flight computer stays, for the adversary
@@ -115,9 +118,15 @@ class Adversary(threading.Thread):
                     data = self.flight.recv(65536)
                     if not data:
                         return
+                    self.answers += data
                     to_host.sendall(data)
         except OSError:
             pass
+
+    def packets(self):
+        """Those of the flight computer, in their order."""
+        frames = [Frame(cobs_decode(coded)) for coded in self.answers.split(b"\0") if coded]
+        return [one.payload for one in frames if one.kind == DATA]
 
 
 def health(packets):
@@ -187,7 +196,8 @@ class Authentication(unittest.TestCase):
             }
             cases["accessible to others than its owner"] = write_key(folder, "group", good, 0o640)
             for reason, file in cases.items():
-                result = vbar("run", MISSION, "--out", folder / "run", *overrides(f"flight_computer.telecommand_key_file={file}"))
+                result = vbar("run", MISSION, "--force", "--out", folder / "run",
+                              *overrides(f"flight_computer.telecommand_key_file={file}"))
                 self.assertNotIn(result.returncode, (0, 10, 12), reason)
                 self.assertIn(reason, result.stderr)
                 self.assertIn("flight_computer.telecommand_key_file", result.stderr)
@@ -222,15 +232,17 @@ class Authentication(unittest.TestCase):
         summary = fly(folder / name, "flight_computer.target=board", f"flight_computer.device=unix:{relay.path}",
                       f"flight_computer.telecommand_key_file={key}", "mission.duration_h=0.5")
         adversary.join(30)
+        self.assertFalse(adversary.is_alive())
         self.assertTrue(adversary.telecommands)
-        return summary, adversary.telecommands
+        return summary, adversary
 
     def test_recorded_telecommands_are_refused_in_another_session(self):
         with scratch() as folder:
             key = write_key(folder)
             secret = bytes.fromhex(key.read_text())
             with Flight(folder, key) as flight:
-                summary, recorded = self.fly_through(folder, key, flight, "run")
+                summary, adversary = self.fly_through(folder, key, flight, "run")
+                recorded = adversary.telecommands
                 self.assertEqual(hashes(summary), hashes(fly(folder / "without", "mission.duration_h=0.5")))
                 sequences = []
                 for packet in recorded:
@@ -275,7 +287,7 @@ class Authentication(unittest.TestCase):
         with scratch() as folder:
             key = write_key(folder)
             with Flight(folder, key) as flight:
-                _, recorded = self.fly_through(folder, key, flight, "run")
+                recorded = self.fly_through(folder, key, flight, "run")[1].telecommands
             with Flight(folder, key, "second") as flight:
                 session = Session(SerialLine(flight.stream), 78)
                 session.hello()
@@ -296,12 +308,11 @@ class Authentication(unittest.TestCase):
                 return sealed(packet[:40] + bytes([packet[40] ^ 4]) + packet[41:])
 
             with Flight(folder, key) as flight:
-                self.fly_through(folder, key, flight, "run", change)
-                session = Session(SerialLine(flight.stream), 79)
-                session.hello()
-                session.goodbye()
-            notes = (folder / "run" / "notes.csv").read_text()
-            self.assertRegex(notes, r"(?i)checksum")
+                _, adversary = self.fly_through(folder, key, flight, "run", change)
+            packets = adversary.packets()
+            counted = health(packets)
+            self.assertEqual((counted["checksum"], counted["other"]), (1, 0))
+            self.assertEqual(reports(packets), len(adversary.telecommands) - 1)
 
 
 if __name__ == "__main__":
