@@ -107,7 +107,8 @@ TEST(Experiment3, ReceiversOfOtherRatesDoAsWell) {
 
 namespace {
 
-constexpr int kPropagated = telemetry_navigation::kSourcePropagated, kFixed = telemetry_navigation::kSourceGnssFixed;
+constexpr int kPropagated = telemetry_navigation::kSourcePropagated;
+constexpr int kFixed = telemetry_navigation::kSourceGnssFixed;
 
 TEST(Crosslink, AFifthLostAndFiveSecondsLateCostLessThanHalf) {
   const std::vector<std::string> poor{"links.crosslink.latency={distribution=\"uniform\", min_s=0.0, max_s=5.0}",

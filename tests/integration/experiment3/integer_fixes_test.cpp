@@ -146,7 +146,7 @@ struct Outcome {
   double nis = 0.0;
 };
 
-Outcome fly(const Wander& wander, std::uint64_t first_seed, int seeds) {
+Outcome fly_with(const Wander& wander, std::uint64_t first_seed, int seeds) {
   Outcome outcome;
   double phases = 0.0;
   for (std::uint64_t seed = first_seed; seed < first_seed + static_cast<std::uint64_t>(seeds); ++seed) {
@@ -179,7 +179,7 @@ Outcome fly(const Wander& wander, std::uint64_t first_seed, int seeds) {
 // density.
 TEST(PhaseWander, ConfiguredItIsFixedAsSoonAsWhiteNoise) {
   for (const double wander_mm : {0.5, 1.0, 2.0}) {
-    const Outcome outcome = fly({wander_mm, wander_mm}, 1, 10);
+    const Outcome outcome = fly_with({wander_mm, wander_mm}, 1, 10);
     accuracy::expect_count(
         fmt::format("carrier-phase navigation, phase wander {} mm over 60 s: wrong integers held, 10 "
                     "seeds, 20 minutes each",
@@ -197,7 +197,7 @@ TEST(PhaseWander, ConfiguredItIsFixedAsSoonAsWhiteNoise) {
 
 TEST(PhaseWander, WronglyConfiguredItHoldsNoWrongInteger) {
   for (const Wander& wander : {Wander{1.0, 0.5}, Wander{0.5, 1.0}, Wander{0.0, 1.0}, Wander{2.0, 1.0}}) {
-    const Outcome outcome = fly(wander, 11, 10);
+    const Outcome outcome = fly_with(wander, 11, 10);
     EXPECT_EQ(outcome.wrong, 0) << wander.true_mm << " mm, configured " << wander.configured_mm;
     EXPECT_EQ(outcome.fixed_at_the_end, 10) << wander.true_mm << " mm, configured " << wander.configured_mm;
   }

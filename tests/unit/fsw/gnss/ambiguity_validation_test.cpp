@@ -253,9 +253,9 @@ TEST_F(AmbiguityValidation, AsksNothingOfTheHeap) {
   Random random(9);
   const Problem problem = problems::draw(
       problems::session_covariance(Session{.frequencies = 2, .epochs = 5, .youngest_epochs = 1}, 40, random), random);
-  const std::size_t before = test::allocation_count();
+  const std::size_t before = vbar::test::allocation_count();
   const bool ok = decide(problem).ok();
-  EXPECT_EQ(test::allocation_count(), before);
+  EXPECT_EQ(vbar::test::allocation_count(), before);
   EXPECT_TRUE(ok);
 }
 

@@ -307,9 +307,9 @@ TEST(Lambda, ReadsTheLowerTriangleOnly) {
 TEST(Lambda, AsksNothingOfTheHeap) {
   Random random(8);
   const Problem problem = problems::draw(problems::random_session_covariance(24, random), random);
-  const std::size_t before = test::allocation_count();
+  const std::size_t before = vbar::test::allocation_count();
   const bool ok = resolve(problem).ok();
-  EXPECT_EQ(test::allocation_count(), before);
+  EXPECT_EQ(vbar::test::allocation_count(), before);
   EXPECT_TRUE(ok);
 }
 
