@@ -19,7 +19,7 @@ namespace {
 using namespace std::chrono_literals;
 using fsw::Duration;
 using test::read_available;
-using test::sample_in_orbit;
+using vbar::test::sample_in_orbit;
 
 Scenario scenario_of_pair(Pace pace = Pace::kLockStep) {
   Scenario scenario;

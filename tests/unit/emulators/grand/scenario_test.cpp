@@ -148,7 +148,7 @@ namespace {
 using namespace std::chrono_literals;
 using fsw::Duration;
 using test::read_available;
-using test::sample_in_orbit;
+using vbar::test::sample_in_orbit;
 
 class BenchTest : public ::testing::Test {
  protected:

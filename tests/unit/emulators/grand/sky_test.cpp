@@ -20,7 +20,7 @@ using fsw::Duration;
 using fsw::Vector3;
 using fsw::gnss::kSpeedOfLight;
 using test::kGnssStart;
-using test::sample_in_orbit;
+using vbar::test::sample_in_orbit;
 using twins::gnss::Signal;
 
 /// Keeps the largest value, and a NaN for good.

@@ -15,7 +15,7 @@ namespace {
 
 using fsw::Duration;
 using fsw::Vector3;
-using test::sample_in_orbit;
+using vbar::test::sample_in_orbit;
 
 constexpr Duration kJoin{165'000'000};
 

@@ -11,7 +11,6 @@
 #include <thread>
 #include <vector>
 
-#include <X11/Xlib.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
@@ -19,6 +18,9 @@
 #include "host_sim/io/child_process.h"
 #include "host_sim/mission/data_file.h"
 #include "tests/support/paths.h"
+
+// Last, also where this header is included: X11 defines macros with names of ours, as Status.
+#include <X11/Xlib.h>
 
 namespace vbar::optical_stimulator::bench::test {
 

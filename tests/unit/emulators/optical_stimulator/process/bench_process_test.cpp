@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <random>
 
-#include <X11/Xlib.h>
 #include <X11/Xutil.h>
 #include <gtest/gtest.h>
 #include <signal.h>
