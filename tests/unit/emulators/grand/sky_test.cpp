@@ -20,8 +20,8 @@ using fsw::Duration;
 using fsw::Vector3;
 using fsw::gnss::kSpeedOfLight;
 using test::kGnssStart;
-using vbar::test::sample_in_orbit;
 using twins::gnss::Signal;
+using vbar::test::sample_in_orbit;
 
 /// Keeps the largest value, and a NaN for good.
 void keep_worst(double& worst, double value) {
