@@ -56,8 +56,7 @@ void Gnc::check_drift(const safety_configuration& safety) {
   if (!assessment_.is_known) return;
   const double keep_out = guidance_.keep_out(management_.configuration());
   const bool is_known = is_drift_known(safety);
-  const bool is_without_plan = guidance_.is_holding() || is_target_in_doubt();
-  const bool is_unsafe = is_known && is_without_plan && assessment_.passive_distance < keep_out;
+  const bool is_unsafe = is_known && guidance_.is_holding() && assessment_.passive_distance < keep_out;
   if (!is_unsafe) unsafe_since_.reset();
   if (is_unsafe && !unsafe_since_) unsafe_since_ = now_;
   const bool has_lasted = unsafe_since_ && seconds(now_ - *unsafe_since_) >= safety.retreat_delay_s;
@@ -88,11 +87,10 @@ void Gnc::check_retreat() {
                        .argument = math::sqrt(retreat_.burn().dv_rtn.squaredNorm())});
 }
 
-/// Detects that no plan could be flown at the last decision of guidance, or that none is made about an object that may
-/// be another satellite.
+/// Detects that no plan could be flown at the last decision of guidance.
 void Gnc::check_hold() {
   faults_.check(now_, {.fault = telemetry_health::kFaultHold,
-                       .is_detected = guidance_.is_holding() || is_target_in_doubt(),
+                       .is_detected = guidance_.is_holding(),
                        .argument = static_cast<double>(guidance_.report().holds)});
 }
 

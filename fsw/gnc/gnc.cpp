@@ -129,8 +129,7 @@ void Gnc::proceed_with_caution(const safety_configuration& safety, bool is_deman
 }
 
 void Gnc::control() {
-  const bool must_hold = management_.safety() != nullptr && faults_.demands(faults::Response::kHold);
-  const bool may_plan = !must_hold && !is_target_in_doubt();
+  const bool may_plan = management_.safety() == nullptr || !faults_.demands(faults::Response::kHold);
   guidance_.update(now_, inbox_.step_period(), navigation_, management_, retreat_, may_plan);
   check_hold();
 }

@@ -108,10 +108,6 @@ class Gnc : private GncState {
   [[nodiscard]] bool is_drift_known(const safety_configuration& safety);
   void check_retreat();
   void check_hold();
-  /// Returns whether the orbit may be that of another satellite than the target, found in a search.
-  [[nodiscard]] bool is_target_in_doubt() const {
-    return measurements_.source<measurements::BearingSource>().is_target_in_doubt(now_);
-  }
 
   // Commands (commands.cpp).
   void command_maneuvers();

@@ -162,7 +162,6 @@ void BearingAiding::deactivate_blocks(filter::RelativeNavigationFilter& filter) 
 }
 
 const KeptOrbit& BearingAiding::kept_at_epoch(const filter::RelativeNavigationFilter& filter) {
-  if (filter.is_confirmed_by_others(kSource)) kept_.forget();
   kept_.advance(filter);
   return kept_;
 }

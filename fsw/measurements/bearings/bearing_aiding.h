@@ -67,8 +67,6 @@ class BearingAiding {
  public:
   static constexpr filter::MeasurementSource kSource{.bit = navigation_configuration::kUseBearings,
                                                      .confirms_orbit = true};
-  /// Four revolutions: longer than a target can be hidden by an eclipse, a camera that glares, or a fault of 3 h.
-  static constexpr Duration kLongestDoubt = duration_of_seconds(21600);
 
   /// Replaces the settings; a batch being collected stays unless its settings change.
   void configure(const BearingSettings& settings);
@@ -88,11 +86,6 @@ class BearingAiding {
 
   /// The orbit before the first bearings that contradicted it and led to another one, at the epoch of the filter.
   const KeptOrbit& kept_at_epoch(const filter::RelativeNavigationFilter& filter);
-  [[nodiscard]] bool has_kept() const { return kept_.is_kept(); }
-  /// Whether that orbit was kept less than kLongestDoubt ago.
-  [[nodiscard]] bool is_recently_kept(GpsTime now) const {
-    return kept_.is_kept() && now - kept_.since() < kLongestDoubt;
-  }
   /// Returns to that orbit: what has been observed since is another satellite.
   void return_to_kept(GpsTime now, filter::RelativeNavigationFilter& filter);
 

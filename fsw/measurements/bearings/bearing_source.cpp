@@ -145,9 +145,7 @@ void BearingSource::process_record(const Record& record, Context& context, filte
     aiding_.return_to_kept(record.time, filter);
     search_ = {};
   }
-  const bool had_kept = aiding_.has_kept();
   edit_status_ = aiding_.process(record.time, bearing, sun_eci, filter);
-  if (aiding_.has_kept() && !had_kept) was_found_in_search_ = search_.is_widened();
   note_search(priors, filter);
   a_roe_m_ = filter.a_roe_m();
   a_roe_covariance_m2_ = filter.a_roe_covariance_m2();

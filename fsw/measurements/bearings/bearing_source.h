@@ -53,11 +53,6 @@ class BearingSource {
   /// The pointing to the target, off it where a lost target is searched; in turn with that to the target on the orbit
   /// that the present one has replaced.
   [[nodiscard]] Pointing searched(const Pointing& to_target) const;
-  /// Whether the object that the orbit follows was found in a search and may be another satellite than the target: no
-  /// other source confirms the orbit, and the one that it has replaced may still be the target's.
-  [[nodiscard]] bool is_target_in_doubt(GpsTime now) const {
-    return was_found_in_search_ && aiding_.is_recently_kept(now);
-  }
   /// Attitude by the image of the step, if enough of its stars were identified.
   [[nodiscard]] std::optional<StarAttitude> star_attitude() const;
   /// Telemetry of the image of the step, if there was one.
@@ -78,7 +73,6 @@ class BearingSource {
   std::array<target_tracking::OwnBurn, filter::RelativeNavigationFilter::kMaxImpulses> burns_since_image_{};
   std::optional<Vector3> kept_direction_rtn_;  ///< to the target on the orbit that was replaced
   int images_with_kept_ = 0;
-  bool was_found_in_search_ = false;  ///< the present orbit, while the one before is kept
   std::optional<GpsTime> last_image_;
   bool has_image_ = false;
   BearingEditStatus edit_status_ = BearingEditStatus::kNone;

@@ -21,7 +21,6 @@ class KeptOrbit {
   void keep(const filter::RelativeNavigationFilter& filter);
   void forget() { pair_.reset(); }
   [[nodiscard]] bool is_kept() const { return pair_.has_value(); }
-  [[nodiscard]] GpsTime since() const { return since_; }
 
   /// Propagates to the epoch of the filter. An orbit that was kept for kLongest, or has become invalid, is forgotten.
   void advance(const filter::RelativeNavigationFilter& filter);
