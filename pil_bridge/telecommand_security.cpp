@@ -1,19 +1,12 @@
 #include "pil_bridge/telecommand_security.h"
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <cstring>
 #include <ctime>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include "host_sim/io/file_descriptor.h"
+#include "boards/posix/telecommand_key_file.h"
 
 namespace vbar::pil {
 namespace {
@@ -67,24 +60,13 @@ class Authenticated final : public FlightComputer {
 }  // namespace
 
 packets::TelecommandSecurity read_telecommand_security(const std::string& file) {
-  const auto refuse = [&](const std::string& found) {
-    throw FlightComputerError("flight_computer.telecommand_key_file '" + file + "': " + found +
-                              "; accepted: a file of 64 hexadecimal digits that its owner alone may read (chmod 600)");
-  };
-  const io::FileDescriptor fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK));
-  if (fd.get() < 0) refuse(std::strerror(errno));
-  struct stat status {};
-  if (::fstat(fd.get(), &status) != 0 || !S_ISREG(status.st_mode)) refuse("is not a file");
-  if ((status.st_mode & (S_IRWXG | S_IRWXO)) != 0) refuse("is accessible to others than its owner");
-  std::array<char, 128> text{};
-  const ssize_t size = ::read(fd.get(), text.data(), text.size());
-  if (size < 0) refuse(std::strerror(errno));
-  const auto key = packets::parse_telecommand_key(std::span(text).first(static_cast<std::size_t>(size)));
-  if (static_cast<std::size_t>(size) == text.size()) refuse("has more than 64 digits");
-  if (key.status() == fsw::Status::kInvalidArgument) refuse("has characters that are not hexadecimal digits");
-  if (!key.ok())
-    refuse(key.status() == fsw::Status::kTooShort ? "has fewer than 64 digits" : "has more than 64 digits");
-  return {.key = key.value(), .index = packets::kHostKeyIndex, .sequence = sequence_now()};
+  packets::TelecommandSecurity security;
+  const char* const fault = boards::posix::read_telecommand_key(file.c_str(), security);
+  if (fault != nullptr) {
+    throw FlightComputerError("flight_computer.telecommand_key_file '" + file + "': " + fault +
+                              "; accepted: a file of 64 hexadecimal digits that its owner alone may read");
+  }
+  return security;
 }
 
 std::unique_ptr<FlightComputer> make_authenticated(std::unique_ptr<FlightComputer> computer,

@@ -6,17 +6,14 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
-#include <ctime>
 #include <new>
 
-#include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "boards/common/flight_executive.h"
 #include "boards/posix/links.h"
 #include "boards/posix/stack_meter.h"
-#include "fsw/packets/security_trailer.h"
+#include "boards/posix/telecommand_key_file.h"
 
 namespace vbar::boards::posix {
 namespace {
@@ -102,28 +99,6 @@ int open_datagram(const Options& options) {
 /// Its memory is static, because it is large; it is constructed when its link exists.
 alignas(FlightExecutive) std::array<std::byte, sizeof(FlightExecutive)> executive_memory;
 
-/// Reads the key, whose sequence numbers begin with the present time of this computer's clock. Returns null, or else
-/// the reason why there is none.
-const char* read_key(const char* path, fsw::packets::TelecommandSecurity& security) {
-  const int fd = ::open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
-  if (fd < 0) return std::strerror(errno);
-  struct stat status {};
-  std::array<char, 128> text{};
-  const bool is_file = ::fstat(fd, &status) == 0 && S_ISREG(status.st_mode);
-  const ssize_t size = is_file ? ::read(fd, text.data(), text.size()) : -1;
-  ::close(fd);
-  if (size < 0) return "not a file that can be read";
-  if ((status.st_mode & (S_IRWXG | S_IRWXO)) != 0) return "accessible to others than its owner (chmod 600)";
-  const auto key = fsw::packets::parse_telecommand_key(std::span(text).first(static_cast<std::size_t>(size)));
-  if (!key.ok() || static_cast<std::size_t>(size) == text.size()) return "not 64 hexadecimal digits";
-  timespec now{};
-  if (::clock_gettime(CLOCK_REALTIME, &now) != 0) return std::strerror(errno);
-  security.key = key.value();
-  security.index = fsw::packets::kHostKeyIndex;
-  security.sequence = fsw::packets::sequence_at(now.tv_sec, now.tv_nsec);
-  return nullptr;
-}
-
 std::uint32_t measure_stack(void* /*context*/) {
   return stack_high_water();
 }
@@ -163,9 +138,9 @@ int fly(const char* name, Link& link, const Options& options) {
   ReceiverLine receiver(options.receiver);
   fsw::packets::TelecommandSecurity security;
   const char* const path = options.telecommand_key;
-  const char* const fault = path == nullptr ? nullptr : read_key(path, security);
+  const char* const fault = path == nullptr ? nullptr : read_telecommand_key(path, security);
   if (fault != nullptr) {
-    std::fprintf(stderr, "%s: key of telecommands %s: %s\n", name, path, fault);
+    std::fprintf(stderr, "%s: key of telecommands %s %s\n", name, path, fault);
     return 1;
   }
   Flight<Link> flight{name, &link, &receiver, path == nullptr ? nullptr : &security, LinkEnd::kFailed};
